@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# How everything of ours is compiled. -ffp-contract=off: the same bytes from every instruction set (decisions/).
+add_library(thalweg_options INTERFACE)
+target_compile_options(thalweg_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -ffp-contract=off)
+if(THALWEG_NATIVE)
+  target_compile_options(thalweg_options INTERFACE -march=native)
+elseif(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  target_compile_options(thalweg_options INTERFACE -march=x86-64-v3)
+endif()
+if(THALWEG_SANITIZE)
+  target_compile_options(thalweg_options INTERFACE -fsanitize=address,undefined -fno-sanitize-recover=undefined)
+  target_link_options(thalweg_options INTERFACE -fsanitize=address,undefined)
+endif()
+if(THALWEG_COVERAGE)
+  target_compile_options(thalweg_options INTERFACE --coverage)
+  target_link_options(thalweg_options INTERFACE --coverage)
+endif()
+set_target_properties(thalweg_options PROPERTIES EXPORT_NAME options)

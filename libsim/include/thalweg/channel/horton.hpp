@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "thalweg/channel/network.hpp"
+
+namespace thalweg::channel {
+
+/// Strahler streams of one order: chains of links of that order.
+struct OrderStatistics {
+    Index order;
+    Index streams;
+    double mean_length_m;
+    double mean_area_m2;    ///< drainage area at the stream's lower end
+    double mean_slope;      ///< mean of drop over length of the streams
+    double mean_drop_m;
+};
+
+std::vector<OrderStatistics> strahler_statistics(const StreamNetwork&);
+
+/// One of Horton's ratios, both ways (NaN where fewer than two orders exist).
+struct HortonRatio {
+    double regression;   ///< 10^|slope| of log10(statistic) on order
+    double mean_ratio;   ///< mean of the ratios of successive orders
+};
+
+/// Horton's laws (Horton 1945, Schumm 1956): bifurcation, length, area and slope ratio, each above 1 when the law holds.
+struct HortonRatios {
+    HortonRatio bifurcation, length, area, slope;
+};
+
+HortonRatios horton_ratios(const std::vector<OrderStatistics>&);
+
+}  // namespace thalweg::channel

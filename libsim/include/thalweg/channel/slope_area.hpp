@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "thalweg/core/statistics.hpp"
+#include "thalweg/terrain/graph.hpp"
+
+namespace thalweg::channel {
+
+/// One measured slope with the drainage area it belongs to, both > 0.
+struct SlopeAreaPoint {
+    double area_m2;
+    double slope;          ///< m/m along the flow
+};
+
+/// Mean of the points of one bin of area (of their logarithms).
+struct SlopeAreaBin {
+    double area_m2;        ///< geometric mean
+    double slope;          ///< geometric mean
+    double slope_se;       ///< standard error of the mean of ln slope, times slope; NaN for a single point
+    Index count;
+};
+
+/// Steepness law S = ks·A^(−θ) (Flint 1974) fitted on the bins.
+struct SlopeArea {
+    Estimate theta;        ///< concavity θ
+    Estimate ks;           ///< steepness, m^(2θ)
+    double r2;
+    std::vector<SlopeAreaBin> bins;
+};
+
+struct SegmentOptions {
+    double drop_m;                   ///< fall of each segment
+    double largest_area_ratio = 1.6; ///< a segment never crosses a larger jump of the area
+    double smallest_area_m2 = 0;     ///< where channels begin
+};
+
+/// Slopes over segments of fixed drop along carved profiles, cut where a tributary makes the area jump (SCIENCE: steps
+/// of the DEM's vertical quantum make single-cell slopes useless). Each river is walked up from its mouth along the
+/// donor of largest area. `used`: 1 where a node may enter (empty: all).
+std::vector<SlopeAreaPoint> fixed_drop_segments(const terrain::FlowGraph&, std::span<const double> drainage_area_m2,
+                                                std::span<const double> carved_elevation_m,
+                                                std::span<const std::uint8_t> used, const SegmentOptions&);
+
+/// The slope of every node to its receiver (a mesh, whose geometry is exact). Nodes with slope ≤ 0 or without receiver
+/// are left out.
+std::vector<SlopeAreaPoint> node_slopes(const terrain::FlowGraph&, std::span<const double> drainage_area_m2,
+                                        std::span<const double> elevation_m, std::span<const std::uint8_t> used = {});
+
+/// Ten bins per decade of area, averaged in the logarithm.
+std::vector<SlopeAreaBin> slope_area_bins(std::span<const SlopeAreaPoint>, int bins_per_decade = 10);
+
+/// Weighted regression of ln slope on ln area over the bins; `smallest_se` (dex) is a floor for a bin's error.
+SlopeArea fit_slope_area(std::vector<SlopeAreaBin>, double smallest_se_dex = 0.01);
+
+/// Vertical resolution of the heights: the largest q of which (nearly) all are whole multiples, e.g. 1 for integer
+/// metres, 0.3048 for whole feet; 0 when there is none above `smallest_m`.
+double vertical_quantum(std::span<const double> elevation_m, double smallest_m = 0.001);
+
+}  // namespace thalweg::channel

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "thalweg/evolve/river.hpp"
+
+namespace thalweg::evolve {
+
+struct TimeOptions {
+    double step_yr;
+    Index max_steps;
+    double convergence = 1e-3;   ///< stop when the mean rate falls below this times the mean uplift; 0: never
+};
+
+/// After each step, for the history, progress and snapshots.
+struct StepRecord {
+    Index step;                  ///< from 1
+    double time_yr;
+    Index lakes;
+    double elevation_max_m, elevation_mean_m;   ///< mean weighted by cell area
+    double max_rate_m_per_yr, mean_rate_m_per_yr;
+    double seconds;              ///< wall time of this step; the only member that differs between equal runs
+};
+
+enum class StopReason { converged, max_steps };
+std::string to_string(StopReason);
+
+struct SimulationResult {
+    Index steps = 0;
+    StopReason stop_reason = StopReason::max_steps;
+    double max_rate_m_per_yr = 0;
+    double mean_rate_m_per_yr = 0;
+    Index frozen_receivers = 0;
+    std::vector<std::uint8_t> frozen;   ///< 1 at nodes whose receiver was frozen
+    Index lakes_final = 0;
+    MassBalance mass;
+    int largest_newton_iterations = 0;
+};
+
+using Observer = std::function<void(const StepRecord&, const Landscape&)>;
+
+/// Steps until the landscape is steady or the steps are used up. If for 50 steps only the same few nodes exchanged their
+/// receivers, those are frozen and counted.
+SimulationResult simulate(const Grid&, const River&, const Setting&, const TimeOptions&, Landscape&,
+                          const Observer& = {});
+SimulationResult simulate(const Mesh&, const River&, const Setting&, const TimeOptions&, Landscape&,
+                          const Observer& = {});
+
+struct SteadyResult {
+    Index sweeps;
+    bool converged;
+    Index frozen_receivers;
+    std::vector<std::uint8_t> frozen;
+};
+
+/// Steady state directly: under fixed receivers every slope is min(talus, (u/(k·A^m))^(1/n)), integrated up the trees;
+/// re-routed until no receiver changes (those that cycle are kept after 20 repeats and counted). Where u > 0 and k·A^m
+/// is 0 the talus limit must be on, else Error.
+SteadyResult solve_steady(const Grid&, const River&, const Setting&, Index max_sweeps, Landscape&);
+SteadyResult solve_steady(const Mesh&, const River&, const Setting&, Index max_sweeps, Landscape&);
+
+/// 1 where the slope to the receiver stands at the talus limit (relative tolerance 1e-9).
+std::vector<std::uint8_t> at_talus_limit(const Grid&, const Drainage&, const River&, const Landscape&);
+std::vector<std::uint8_t> at_talus_limit(const Mesh&, const Drainage&, const River&, const Landscape&);
+
+}  // namespace thalweg::evolve

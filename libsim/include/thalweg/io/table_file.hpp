@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "thalweg/core/table.hpp"
+
+namespace thalweg::io {
+
+/// Writes a header line and one line per row; numbers with the fewest digits that read back to the same double (through
+/// GDAL's CSV driver no such promise exists, so this writes the text itself with std::to_chars).
+void write_csv(const std::filesystem::path&, const Table&);
+
+/// Reads what write_csv wrote: every column as numbers where all its fields are numbers or empty (NaN), else as text.
+Table read_csv(const std::filesystem::path&);
+
+/// Writes tables as layers of a GeoPackage, bytes a function of the contents alone (fixed date).
+/// `crs_wkt` empty: an undefined Cartesian system.
+void write_geopackage(const std::filesystem::path&, const std::vector<Table>& layers, const std::string& crs_wkt);
+
+}  // namespace thalweg::io

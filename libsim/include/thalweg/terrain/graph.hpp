@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "thalweg/core/grid.hpp"
+#include "thalweg/core/mesh.hpp"
+
+namespace thalweg::terrain {
+
+/// Where all water goes: from here on the geometry is not needed, and a DEM, a simulated mesh and a grown network look
+/// the same to every statistic.
+struct FlowGraph {
+    std::vector<Index> receiver;   ///< per node; `none` at outlets and nodes without data
+    std::vector<double> length;    ///< per node: distance to the receiver (m); 0 where there is none
+    std::vector<Index> order;      ///< every node with data once, each after its receiver: outlets first
+
+    Index size() const { return static_cast<Index>(receiver.size()); }
+};
+
+/// Nodes with data (elevation not NaN), each after its receiver. Linear, without recursion; a function of the directions
+/// alone. `directions` must be free of loops.
+std::vector<Index> downstream_first_order(const Grid&, std::span<const double> elevation_m, const FlowDirections&);
+std::vector<Index> downstream_first_order(const Mesh&, std::span<const double> elevation_m, const FlowDirections&);
+
+/// The directions of a topology as a graph.
+FlowGraph flow_graph(const Grid&, std::span<const double> elevation_m, const FlowDirections&);
+FlowGraph flow_graph(const Mesh&, std::span<const double> elevation_m, const FlowDirections&);
+
+}  // namespace thalweg::terrain
