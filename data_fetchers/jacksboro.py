@@ -31,7 +31,6 @@ TARGET = os.path.join(os.path.dirname(__file__), "..", "validation", "data", "ja
 LANDMARKS = [
     ("Cross Mountain, summit", 36.19833, -84.23056, 1077, 1, np.max),
     ("Jacksboro", 36.33151, -84.18879, 335, 3, np.median),
-    ("LaFollette", 36.37501, -84.12762, 327, 3, np.median),
     ("Rocky Top", 36.22417, -84.15583, 265, 3, np.median),
     ("Norris Lake, near its dam", 36.22900, -84.08500, 311, 1, np.min),
 ]
