@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/terrain/accumulate.hpp"
+
+#include <algorithm>
+#include <ranges>
+
+#include "terrain/check_sizes.hpp"
+
+namespace thalweg::terrain {
+
+std::vector<double> accumulate(const FlowGraph& graph, std::span<const double> amount) {
+    check_sizes(graph.size(), amount.size(), amount.size());
+    std::vector<double> sum(graph.size(), 0.0);
+    for (const Index node : graph.order) sum[node] = amount[node];
+    for (const Index node : std::views::reverse(graph.order)) {
+        if (graph.receiver[node] != none) sum[graph.receiver[node]] += sum[node];
+    }
+    return sum;
+}
+
+std::vector<double> cell_areas(const Grid& grid) {
+    std::vector<double> areas(grid.size());
+    for (Index row = 0; row < grid.rows; ++row) {
+        std::fill_n(areas.begin() + std::size_t{row} * grid.cols, grid.cols, grid.cell_area[row]);
+    }
+    return areas;
+}
+
+std::vector<double> cell_areas(const Mesh& mesh) { return mesh.cell_area; }
+
+std::vector<double> carve(const FlowGraph& graph, std::span<const double> elevation_m) {
+    check_sizes(graph.size(), elevation_m.size(), elevation_m.size());
+    std::vector<double> carved(elevation_m.begin(), elevation_m.end());
+    for (const Index node : std::views::reverse(graph.order)) {
+        const Index receiver = graph.receiver[node];
+        if (receiver != none) carved[receiver] = std::min(carved[receiver], carved[node]);
+    }
+    return carved;
+}
+
+}  // namespace thalweg::terrain

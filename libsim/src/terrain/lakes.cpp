@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/terrain/lakes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "terrain/basin_graph.hpp"
+#include "terrain/check_sizes.hpp"
+#include "thalweg/core/parallel.hpp"
+
+namespace thalweg::terrain {
+namespace {
+
+/// The terrain as the algorithms below see it.
+template <Topology T>
+struct Terrain {
+    const T& topology;
+    std::span<const double> elevation_m;
+    std::span<const Boundary> boundary;
+
+    bool has_data(Index node) const { return !std::isnan(elevation_m[node]); }
+    bool is_stuck(Index node, const FlowDirections& directions) const {
+        return directions[node] == no_flow && boundary[node] == Boundary::interior && has_data(node);
+    }
+};
+
+/// First neighbour of equal height and lower index; `no_flow` if there is none. Flowing along these can never loop:
+/// height never rises, and where it stays the index falls.
+template <Topology T>
+Slot level_slot(const Terrain<T>& terrain, Index node) {
+    Slot found = no_flow;
+    terrain.topology.neighbors(node, [&](Index neighbor, double, Slot slot) {
+        const bool level = neighbor < node && terrain.elevation_m[neighbor] == terrain.elevation_m[node];
+        if (found == no_flow && level) found = slot;
+    });
+    return found;
+}
+
+/// Inner nodes without direction.
+template <Topology T>
+std::vector<Index> stuck_nodes(const Terrain<T>& terrain, const FlowDirections& directions) {
+    std::vector<Index> stuck;
+    for (Index node = 0; node < terrain.topology.size(); ++node) {
+        if (terrain.is_stuck(node, directions)) stuck.push_back(node);
+    }
+    return stuck;
+}
+
+/// Leads flats down their indices and returns, after an entry for the outside, the pits that remain: one per basin.
+template <Topology T>
+std::vector<Index> pits_after_joining_flats(const Terrain<T>& terrain, FlowDirections& directions) {
+    std::vector<Index> pits{none};
+    for (const Index node : stuck_nodes(terrain, directions)) {
+        directions[node] = level_slot(terrain, node);
+        if (directions[node] == no_flow) pits.push_back(node);
+    }
+    return pits;
+}
+
+constexpr Index unlabelled = none - 1;
+
+/// Basin of every node: `outside`, or the number of the pit its water reaches; `none` without data. Each chain is
+/// walked to the first node that is known, and once more to write the label.
+template <Topology T>
+std::vector<Index> label_basins(const Terrain<T>& terrain, const FlowDirections& directions,
+                                const std::vector<Index>& pits) {
+    const Index nodes = terrain.topology.size();
+    std::vector<Index> basin(nodes, unlabelled);
+    for (Index number = 1; number < pits.size(); ++number) basin[pits[number]] = number;
+    const auto receiver = [&](Index node) { return terrain.topology.neighbor(node, directions[node]); };
+    for (Index start = 0; start < nodes; ++start) {
+        Index node = start;
+        while (basin[node] == unlabelled && directions[node] != no_flow) node = receiver(node);
+        if (basin[node] == unlabelled) basin[node] = terrain.has_data(node) ? outside : none;
+        const Index label = basin[node];
+        for (node = start; basin[node] == unlabelled; node = receiver(node)) basin[node] = label;
+    }
+    return basin;
+}
+
+/// Offers every edge between two basins once (twice towards the outside, which is not scanned), and the spills at open
+/// nodes.
+template <Topology T>
+std::vector<Pass> lowest_passes(const Terrain<T>& terrain, const std::vector<Index>& basin, Index basins) {
+    LowestPasses passes(3 * basins);
+    for (Index node = 0; node < terrain.topology.size(); ++node) {
+        const Index here = basin[node];
+        if (here == outside || here == none) continue;
+        const double height = terrain.elevation_m[node];
+        if (terrain.boundary[node] == Boundary::open) passes.offer({height, here, node, outside, none});
+        terrain.topology.neighbors(node, [&](Index neighbor, double, Slot) {
+            const Index there = basin[neighbor];
+            if (there == none || there >= here) return;
+            passes.offer({std::max(height, terrain.elevation_m[neighbor]), here, node, there, neighbor});
+        });
+    }
+    return passes.take();
+}
+
+/// What is known once all water has a way out.
+struct Lakes {
+    std::vector<Index> pits;   ///< per basin; the outside has `none`
+    std::vector<Index> basin;  ///< per node
+    SpillTree spill;
+};
+
+template <Topology T>
+Lakes find_lakes(const Terrain<T>& terrain, FlowDirections& directions) {
+    Lakes lakes{.pits = pits_after_joining_flats(terrain, directions), .basin = {}, .spill = {}};
+    if (lakes.pits.size() == 1) return lakes;
+    lakes.basin = label_basins(terrain, directions, lakes.pits);
+    lakes.spill = spill_tree(lowest_passes(terrain, lakes.basin, static_cast<Index>(lakes.pits.size())), lakes.pits,
+                             terrain.elevation_m);
+    return lakes;
+}
+
+/// Water level of every basin: no lower than that of the basin it spills into.
+std::vector<double> water_levels(const SpillTree& spill) {
+    std::vector<double> level(spill.way_out.size(), -std::numeric_limits<double>::infinity());
+    for (const Index basin : spill.order) {
+        if (basin == outside) continue;
+        const Pass& out = spill.way_out[basin];
+        level[basin] = std::max(out.height_m, level[out.other_basin]);
+    }
+    return level;
+}
+
+template <Topology T>
+std::vector<double> filled(const Terrain<T>& terrain) {
+    check_sizes(terrain.topology.size(), terrain.elevation_m.size(), terrain.boundary.size());
+    FlowDirections directions = route(terrain.topology, terrain.elevation_m, terrain.boundary);
+    const Lakes lakes = find_lakes(terrain, directions);
+    std::vector<double> surface(terrain.elevation_m.begin(), terrain.elevation_m.end());
+    if (lakes.pits.size() == 1) return surface;
+    const std::vector<double> level = water_levels(lakes.spill);
+    parallel_for(0, terrain.topology.size(), [&](Index first, Index last) {
+        for (Index node = first; node < last; ++node) {
+            if (lakes.basin[node] != none) surface[node] = std::max(surface[node], level[lakes.basin[node]]);
+        }
+    });
+    return surface;
+}
+
+/// Turns round the path from `node` down to its pit, so that `node` flows by `out` and the pit towards `node`.
+template <Topology T>
+void reverse_path(const T& topology, Index node, Slot out, FlowDirections& directions) {
+    while (true) {
+        const Slot down = directions[node];
+        directions[node] = out;
+        if (down == no_flow) return;
+        out = topology.reverse(node, down);
+        node = topology.neighbor(node, down);
+    }
+}
+
+template <Topology T>
+Slot slot_towards(const T& topology, Index node, Index target) {
+    Slot found = no_flow;
+    topology.neighbors(node, [&](Index neighbor, double, Slot slot) {
+        if (neighbor == target) found = slot;
+    });
+    return found;
+}
+
+template <Topology T>
+Index drained(const Terrain<T>& terrain, FlowDirections& directions) {
+    check_sizes(terrain.topology.size(), terrain.elevation_m.size(), terrain.boundary.size());
+    check_sizes(terrain.topology.size(), directions.size(), directions.size());
+    const Lakes lakes = find_lakes(terrain, directions);
+    Index count = 0;
+    for (Index basin = 1; basin < lakes.pits.size(); ++basin) {
+        const Pass& out = lakes.spill.way_out[basin];
+        reverse_path(terrain.topology, out.node, slot_towards(terrain.topology, out.node, out.other_node), directions);
+        // A flat may be several basins that meet at its own height: only the way up out of it makes it a lake.
+        if (out.height_m > terrain.elevation_m[lakes.pits[basin]]) ++count;
+    }
+    return count;
+}
+
+}  // namespace
+
+std::vector<double> fill(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary) {
+    return filled(Terrain<Grid>{grid, elevation_m, boundary});
+}
+
+std::vector<double> fill(const Mesh& mesh, std::span<const double> elevation_m, std::span<const Boundary> boundary) {
+    return filled(Terrain<Mesh>{mesh, elevation_m, boundary});
+}
+
+Index drain_lakes(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary,
+                  FlowDirections& directions) {
+    return drained(Terrain<Grid>{grid, elevation_m, boundary}, directions);
+}
+
+Index drain_lakes(const Mesh& mesh, std::span<const double> elevation_m, std::span<const Boundary> boundary,
+                  FlowDirections& directions) {
+    return drained(Terrain<Mesh>{mesh, elevation_m, boundary}, directions);
+}
+
+}  // namespace thalweg::terrain
