@@ -12,8 +12,8 @@ struct OrderStatistics {
     Index order;
     Index streams;
     double mean_length_m;
-    double mean_area_m2;    ///< drainage area at the stream's lower end
-    double mean_slope;      ///< mean of drop over length of the streams
+    double mean_area_m2;  ///< drainage area at the stream's lower end
+    double mean_slope;    ///< mean of drop over length of the streams
     double mean_drop_m;
 };
 
@@ -21,11 +21,12 @@ std::vector<OrderStatistics> strahler_statistics(const StreamNetwork&);
 
 /// One of Horton's ratios, both ways (NaN where fewer than two orders exist).
 struct HortonRatio {
-    double regression;   ///< 10^|slope| of log10(statistic) on order
-    double mean_ratio;   ///< mean of the ratios of successive orders
+    double regression;  ///< 10^slope of log10(statistic) on order, with the sign that makes it above 1 for the law
+    double mean_ratio;  ///< mean of the ratios of successive orders
 };
 
-/// Horton's laws (Horton 1945, Schumm 1956): bifurcation, length, area and slope ratio, each above 1 when the law holds.
+/// Horton's laws (Horton 1945, Schumm 1956): bifurcation, length, area and slope ratio, each above 1 when the law
+/// holds.
 struct HortonRatios {
     HortonRatio bifurcation, length, area, slope;
 };

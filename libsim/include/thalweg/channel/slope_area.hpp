@@ -12,29 +12,31 @@ namespace thalweg::channel {
 /// One measured slope with the drainage area it belongs to, both > 0.
 struct SlopeAreaPoint {
     double area_m2;
-    double slope;          ///< m/m along the flow
+    double slope;       ///< m/m along the flow
+    double weight = 1;  ///< what it counts in a mean: 1 for a node, its length (m) for a segment
 };
 
-/// Mean of the points of one bin of area (of their logarithms).
+/// Weighted mean of the points of one bin of area (of their logarithms).
 struct SlopeAreaBin {
-    double area_m2;        ///< geometric mean
-    double slope;          ///< geometric mean
-    double slope_se;       ///< standard error of the mean of ln slope, times slope; NaN for a single point
+    double area_m2;   ///< geometric mean
+    double slope;     ///< geometric mean
+    double slope_se;  ///< standard error of the mean of ln slope, times slope; NaN for a single point
     Index count;
 };
 
 /// Steepness law S = ks·A^(−θ) (Flint 1974) fitted on the bins.
 struct SlopeArea {
-    Estimate theta;        ///< concavity θ
-    Estimate ks;           ///< steepness, m^(2θ)
+    Estimate theta;  ///< concavity θ
+    Estimate ks;     ///< steepness, m^(2θ)
     double r2;
     std::vector<SlopeAreaBin> bins;
 };
 
 struct SegmentOptions {
-    double drop_m;                   ///< fall of each segment
-    double largest_area_ratio = 1.6; ///< a segment never crosses a larger jump of the area
-    double smallest_area_m2 = 0;     ///< where channels begin
+    double drop_m;                    ///< fall of each segment
+    double smallest_drop_m = 0;       ///< what a reach between two jumps must fall to be told from rounding of heights
+    double largest_area_ratio = 1.6;  ///< a segment never crosses a larger jump of the area
+    double smallest_area_m2 = 0;      ///< where channels begin
 };
 
 /// Slopes over segments of fixed drop along carved profiles, cut where a tributary makes the area jump (SCIENCE: steps
@@ -52,11 +54,18 @@ std::vector<SlopeAreaPoint> node_slopes(const terrain::FlowGraph&, std::span<con
 /// Ten bins per decade of area, averaged in the logarithm.
 std::vector<SlopeAreaBin> slope_area_bins(std::span<const SlopeAreaPoint>, int bins_per_decade = 10);
 
+/// Standard error of each bin's ln slope for weighing: `slope_se`/`slope`, for a bin of a single point the scatter
+/// pooled over the other bins, nowhere less than `smallest_se_dex` (in powers of ten: a bin is no better than the power
+/// law itself). Bins without any scatter to pool get the floor.
+std::vector<double> bin_errors(std::span<const SlopeAreaBin>, double smallest_se_dex);
+
 /// Weighted regression of ln slope on ln area over the bins; `smallest_se` (dex) is a floor for a bin's error.
 SlopeArea fit_slope_area(std::vector<SlopeAreaBin>, double smallest_se_dex = 0.01);
 
-/// Vertical resolution of the heights: the largest q of which (nearly) all are whole multiples, e.g. 1 for integer
-/// metres, 0.3048 for whole feet; 0 when there is none above `smallest_m`.
+/// Vertical resolution of the heights: the largest q of which (nearly) all their differences are whole multiples, e.g.
+/// 1 for integer metres, 0.3048 for whole feet; 0 when there is none above `smallest_m`. One height in a hundred may be
+/// off (a patch of other origin), and each may be rounded to single precision. NaN is skipped; heights that are all
+/// the same have none. Cost: sorting a sample of at most 65 536 heights.
 double vertical_quantum(std::span<const double> elevation_m, double smallest_m = 0.001);
 
 }  // namespace thalweg::channel

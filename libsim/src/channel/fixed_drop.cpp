@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cmath>
+
+#include "thalweg/channel/slope_area.hpp"
+
+namespace thalweg::channel {
+
+namespace {
+
+using terrain::FlowGraph;
+
+/// What the segments are cut from: every node that enters stands for the step to its receiver, with its own area.
+struct Profile {
+    const FlowGraph& graph;
+    std::span<const double> area;
+    std::span<const double> elevation;
+    std::vector<std::uint8_t> enters;
+
+    double drop(Index node) const { return elevation[node] - elevation[graph.receiver[node]]; }
+};
+
+std::vector<std::uint8_t> entering(const FlowGraph& graph, std::span<const double> area,
+                                   std::span<const std::uint8_t> used, double smallest_area) {
+    std::vector<std::uint8_t> enters(graph.size());
+    for (Index node = 0; node < graph.size(); ++node) {
+        enters[node] = graph.receiver[node] != none && (used.empty() || used[node]) && area[node] > 0 &&
+                       area[node] >= smallest_area;
+    }
+    return enters;
+}
+
+/// The donor of largest area (ties: lower index) by which a river goes on upstream, `none` at its head.
+std::vector<Index> main_donors(const Profile& profile) {
+    std::vector<Index> donor(profile.graph.size(), none);
+    for (Index node = 0; node < profile.graph.size(); ++node) {
+        if (!profile.enters[node]) continue;
+        Index& best = donor[profile.graph.receiver[node]];
+        if (best == none || profile.area[node] > profile.area[best]) best = node;
+    }
+    return donor;
+}
+
+/// Cuts one reach (steps between two jumps of the area) into pieces of equal drop, at least `drop_m` each, or keeps it
+/// whole if it falls less. No remainder is left over, and the cuts do not depend on where the steep steps are, so
+/// neither steep nor gentle stretches are preferred.
+void cut_reach(const Profile& profile, std::span<const Index> reach, const SegmentOptions& options,
+               std::vector<SlopeAreaPoint>& points) {
+    double total = 0;
+    for (const Index node : reach) total += profile.drop(node);
+    if (!(total > 0) || total < options.smallest_drop_m) return;
+    const double piece = total / std::max(1.0, std::floor(total / options.drop_m));
+    double fallen = 0, start = 0, length = 0, log_area = 0;
+    for (std::size_t i = 0; i < reach.size(); ++i) {
+        const double step = profile.graph.length[reach[i]];
+        fallen += profile.drop(reach[i]);
+        length += step;
+        log_area += step * std::log(profile.area[reach[i]]);
+        const double target = piece * (std::floor(start / piece + 1e-9) + 1);
+        const bool last = i + 1 == reach.size();
+        if (!last && (fallen < target * (1 - 1e-12) || total - fallen < piece * (1 - 1e-9))) continue;
+        points.push_back({std::exp(log_area / length), (fallen - start) / length, length});
+        start = fallen;
+        length = log_area = 0;
+    }
+}
+
+/// Walks one river upstream and hands over its reaches.
+void cut_river(const Profile& profile, const std::vector<Index>& main_donor, Index mouth, const SegmentOptions& options,
+               std::vector<SlopeAreaPoint>& points) {
+    std::vector<Index> reach;
+    for (Index node = mouth; node != none; node = main_donor[node]) {
+        if (!reach.empty() && profile.area[reach.back()] > options.largest_area_ratio * profile.area[node]) {
+            cut_reach(profile, reach, options, points);
+            reach.clear();
+        }
+        reach.push_back(node);
+    }
+    cut_reach(profile, reach, options, points);
+}
+
+}  // namespace
+
+std::vector<SlopeAreaPoint> fixed_drop_segments(const FlowGraph& graph, std::span<const double> drainage_area_m2,
+                                                std::span<const double> carved_elevation_m,
+                                                std::span<const std::uint8_t> used, const SegmentOptions& options) {
+    const Profile profile{graph, drainage_area_m2, carved_elevation_m,
+                          entering(graph, drainage_area_m2, used, options.smallest_area_m2)};
+    const auto main_donor = main_donors(profile);
+    std::vector<SlopeAreaPoint> points;
+    for (const Index node : graph.order) {
+        if (!profile.enters[node]) continue;
+        const Index receiver = graph.receiver[node];
+        const bool river_begins = !profile.enters[receiver] || main_donor[receiver] != node;
+        if (river_begins) cut_river(profile, main_donor, node, options, points);
+    }
+    return points;
+}
+
+}  // namespace thalweg::channel
