@@ -1,0 +1,248 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Hypsometric, slope–area, Horton and history plots. Each `draw_…` fills given axes; each other function is a figure."""
+from dataclasses import dataclass, field
+
+import numpy as np
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+
+import style
+from data import columns, get
+
+CLOUD_POINTS = 12000
+
+
+@dataclass
+class Side:
+    """One terrain's numbers, ready to be drawn."""
+    label: str
+    look: dict
+    terrain: dict = field(default_factory=dict)      # keys of the summary
+    hypsometry: tuple = ((), ())                     # relative area, relative height
+    cloud: tuple = ((), ())                          # area m², slope
+    bins: tuple = ((), (), ())                       # area m², slope, standard error
+
+
+def absent(axes, sentence):
+    """Says in the plot's place why there is none."""
+    axes.text(0.5, 0.5, sentence, transform=axes.transAxes, ha="center", va="center", color=style.MUTED, wrap=True)
+    axes.grid(False)
+
+
+def label_decades(axis):
+    """Labels 1, 2 and 5 of each decade where an axis spans fewer than two: powers of ten alone would leave it bare."""
+    low, high = axis.get_view_interval()
+    if low > 0 and high / low < 100:
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axis.set_minor_formatter(NullFormatter())
+
+
+def draw_hypsometry(axes, sides):
+    """Share of the area that lies above each relative height (Strahler 1952)."""
+    drawn = False
+    for side in sides:
+        area, height = side.hypsometry
+        if len(area) < 2:
+            continue
+        integral = get(side.terrain, "hypsometry.integral")
+        label = side.label if integral is None else f"{side.label}: integral {integral:.3f}"
+        axes.plot(area, height, color=side.look["color"], linestyle=side.look["linestyle"], label=label)
+        if len(sides) == 1:
+            axes.fill_between(area, height, color=side.look["color"], alpha=0.10, linewidth=0)
+        drawn = True
+    axes.set(xlim=(0, 1), ylim=(0, 1), xlabel="Relative area above, a/A (–)",
+             ylabel="Relative height, (h − min) / (max − min) (–)", aspect="equal")
+    if drawn:
+        axes.legend(loc="upper right")
+    else:
+        absent(axes, "no hypsometric curve")
+
+
+def draw_slope_area(axes, side, theory=None, fit=None):
+    """Cloud, bins with their standard errors, and what is known of the law: the given one and the fitted one."""
+    _draw_cloud(axes, side)
+    _draw_bins(axes, side)
+    if fit is not None:
+        draw_fitted_line(axes, fit, side.look["color"])
+    if theory is not None:
+        axes.plot(theory[0], theory[1], color=style.THEORY, linewidth=1.0, linestyle=(0, (1, 1.2)), zorder=5,
+                  label="steady state, (u/k)$^{1/n}$ A$^{−m/n}$")
+    axes.set(xscale="log", yscale="log", xlabel="Drainage area (m²)", ylabel="Slope (m/m)")
+    if len(side.cloud[0]) or len(side.bins[0]):
+        axes.legend(loc="lower left")
+        label_decades(axes.yaxis)
+    else:
+        axes.set(xlim=(1e4, 1e8), ylim=(1e-3, 1))
+        absent(axes, "no slopes measured")
+
+
+def _draw_cloud(axes, side):
+    area, slope = (np.asarray(values, dtype=float) for values in side.cloud)
+    usable = (area > 0) & (slope > 0)
+    area, slope = area[usable], slope[usable]
+    if area.size == 0:
+        return
+    stride = 1 + area.size // CLOUD_POINTS
+    shown = area[::stride].size
+    axes.plot(area[::stride], slope[::stride], linestyle="none", marker="o", markersize=1.9 if shown < 3000 else 1.2,
+              markeredgewidth=0, color=side.look["color"], alpha=float(np.clip(600 / shown, 0.10, 0.35)),
+              rasterized=True, zorder=2)
+
+
+def _draw_bins(axes, side):
+    area, slope, error = (np.asarray(values, dtype=float) for values in side.bins)
+    if area.size == 0:
+        return
+    error = np.nan_to_num(error)
+    axes.errorbar(area, slope, yerr=[np.minimum(error, 0.95 * slope), error], linestyle="none",
+                  marker=side.look["marker"], markersize=4.2, markerfacecolor="white", markeredgewidth=1.0,
+                  color=side.look["color"], elinewidth=0.9, capsize=0, zorder=6, label=f"{side.label}: bin means ± 1 s.e.")
+
+
+def fitted_curve(fit, table):
+    """The fitted line and its 95 % band, as area, slope, low, high; None without a fit.
+
+    About the mean of ln A, weighted as the fit does, level and slope of the line are uncorrelated: variance of the level
+    = (reported variance of θ)·(weighted variance of ln A), whatever scale the fit gave its errors.
+    """
+    theta, error = fit.get("theta"), fit.get("theta_se")
+    area, fitted = (np.asarray(table.get(name, ()), dtype=float) for name in ("area_m2", "fitted_slope"))
+    usable = (area > 0) & (fitted > 0)
+    if theta is None or usable.sum() < 2:
+        return None
+    area, fitted = area[usable], fitted[usable]
+    slope, slope_error = (np.asarray(table.get(name, fitted), dtype=float)[:usable.size] for name in ("slope", "slope_se"))
+    relative = np.maximum(np.nan_to_num((slope_error / slope)[usable] if "slope_se" in table else np.zeros(area.size)),
+                          0.01 * np.log(10))
+    weight = 1 / relative**2
+    centre = np.average(np.log(area), weights=weight)
+    spread = np.average((np.log(area) - centre)**2, weights=weight)
+    order = np.argsort(area)
+    x = np.linspace(np.log(area[order[0]]), np.log(area[order[-1]]), 60)
+    level = np.interp(x, np.log(area[order]), np.log(fitted[order]))
+    half = 1.96 * (error or 0.0) * np.sqrt(spread + (x - centre)**2)
+    return np.exp(x), np.exp(level), np.exp(level - half), np.exp(level + half)
+
+
+def draw_fitted_line(axes, fit, color):
+    """`fit`: (curve of `fitted_curve`, label)."""
+    (area, slope, low, high), label = fit
+    axes.fill_between(area, low, high, color=color, alpha=0.18, linewidth=0, zorder=3)
+    axes.plot(area, slope, color=style.INK, linewidth=1.3, zorder=4, label=label)
+
+
+def law_label(theta, error):
+    """The legend's words for S ∝ A^−θ."""
+    if theta is None:
+        return "fitted line"
+    return f"fit: θ = {theta:.3f}" + (f" ± {error:.3f}" if error else "")
+
+
+def summary_line(side, extent=None):
+    """The slope–area law of a summary as a curve over its bins (no band); None when it has none."""
+    theta, ks = get(side.terrain, "slope_area.theta"), get(side.terrain, "slope_area.ks")
+    area = np.asarray(side.bins[0], dtype=float)
+    if theta is None or ks is None or area.size < 2:
+        return None
+    x = np.geomspace(np.nanmin(area), np.nanmax(area), 2)
+    slope = ks * x**-theta
+    return (x, slope, slope, slope), law_label(theta, get(side.terrain, "slope_area.theta_se"))
+
+
+HORTON = (("streams", "Number of streams", "RB", "$R_B$"), ("mean_length_m", "Mean length (km)", "RL", "$R_L$"),
+          ("mean_area_m2", "Mean drainage area (km²)", "RA", "$R_A$"), ("mean_slope", "Mean slope (m/m)", "RS", "$R_S$"))
+HORTON_SCALE = {"mean_length_m": 1e-3, "mean_area_m2": 1e-6}
+
+
+def draw_horton(axes, sides, key, label, ratio, symbol):
+    """One of Horton's laws: the statistic of each order with its regression line and ratio."""
+    top = 1
+    for side in sides:
+        order, value = columns(side.terrain.get("strahler"), "order", key)
+        value = value * HORTON_SCALE.get(key, 1)
+        usable = np.isfinite(order) & (value > 0)
+        if not usable.any():
+            continue
+        order, value = order[usable], value[usable]
+        top = max(top, int(order.max()))
+        number = get(side.terrain, f"horton.{ratio}.regression")
+        text = side.label if number is None else f"{side.label}: {symbol} = {number:.2f}"
+        axes.plot(order, value, linestyle="none", marker=side.look["marker"], markersize=4.5, markerfacecolor="white",
+                  markeredgewidth=1.1, color=side.look["color"], label=text, zorder=3)
+        if order.size > 1:
+            line = np.polyfit(order, np.log(value), 1)
+            axes.plot(order, np.exp(np.polyval(line, order)), color=side.look["color"], linewidth=0.9,
+                      linestyle=side.look["linestyle"])
+    axes.set(yscale="log", xlabel="Strahler order (–)", ylabel=label, xlim=(0.7, top + 0.3))
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.xaxis.set_minor_locator(MaxNLocator(1))
+    label_decades(axes.yaxis)
+    if axes.lines:
+        axes.legend(loc="best")
+    else:
+        axes.set_yticks([])
+        absent(axes, "no streams")
+
+
+def draw_horton_panels(axes, sides):
+    for axis, (key, label, ratio, symbol) in zip(np.ravel(axes), HORTON):
+        draw_horton(axis, sides, key, label, ratio, symbol)
+
+
+def draw_history(height_axes, rate_axes, history):
+    """Heights and the largest rate of change against time (or against the step, where a run has no time)."""
+    time = np.asarray(history.get("time_yr", ()), dtype=float) / 1e6
+    label = "Time (Myr)"
+    if time.size == 0 or not np.isfinite(time).all() or np.ptp(time) == 0:
+        time, label = np.asarray(history.get("step", ()), dtype=float), "Sweep of the steady solver (–)"
+    for name, word, line in (("elevation_max_m", "highest", "-"), ("elevation_mean_m", "mean", (0, (5, 1.6)))):
+        if name in history and time.size:
+            height_axes.plot(time, history[name], color=style.SYNTHETIC, linestyle=line, label=word)
+    rate = np.asarray(history.get("max_rate_m_per_yr", ()), dtype=float) * 1000
+    usable = rate > 0
+    if usable.any():
+        rate_axes.plot(time[usable], rate[usable], color=style.SYNTHETIC)
+        rate_axes.set_yscale("log")
+    else:
+        absent(rate_axes, "no rates of change recorded")
+    height_axes.set(ylabel="Elevation (m)", xlabel=label)
+    rate_axes.set(ylabel="Largest rate of change (mm/yr)", xlabel=label)
+    if time.size:
+        height_axes.legend(loc="lower right")
+    else:
+        absent(height_axes, "no history recorded")
+
+
+def hypsometry(sides):
+    drawing = style.figure(3.6, 3.6)
+    draw_hypsometry(drawing.add_subplot(), sides)
+    return drawing
+
+
+def slope_area(side, theory=None, fit=None):
+    drawing = style.figure(3.6, 4.8)
+    draw_slope_area(drawing.add_subplot(), side, theory, fit)
+    return drawing
+
+
+def slope_area_pair(sides, theories=(None, None), fits=(None, None)):
+    """Side by side with shared axes, so that level and slope can be compared by eye."""
+    drawing = style.figure(3.3)
+    axes = drawing.subplots(1, 2, sharex=True, sharey=True)
+    for axis, side, theory, fit in zip(axes, sides, theories, fits):
+        draw_slope_area(axis, side, theory, fit)
+        axis.set_title(side.label[:1].upper() + side.label[1:])
+    axes[1].set_ylabel("")
+    return drawing
+
+
+def horton(sides):
+    drawing = style.figure(4.6)
+    draw_horton_panels(drawing.subplots(2, 2), sides)
+    return drawing
+
+
+def history(table):
+    drawing = style.figure(2.7)
+    draw_history(*drawing.subplots(1, 2), table)
+    return drawing

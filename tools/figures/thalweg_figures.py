@@ -1,0 +1,109 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Figures and report of the thalweg commands: thalweg_figures.py analyze|simulate|fit|compare|report DIR
+
+Reads what a command wrote into DIR and adds DIR/figures/*.png, or for `report` DIR/report.html for a whole study. Bytes
+depend on the files read alone. Exit code 1 and one line on stderr when something needed is not there.
+"""
+import os
+import sys
+import tempfile
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
+
+
+def figures_of_analyze(folder):
+    import curves, maps, sides
+    side = sides.from_folder(folder, "measured", "real")
+    yield "map", maps.single(_file(folder, "filled.tif"), _file(folder, "network.gpkg"))[0]
+    yield "hypsometry", curves.hypsometry([side])
+    yield "slope_area", curves.slope_area(side, fit=curves.summary_line(side))
+    yield "horton", curves.horton([side])
+
+
+def figures_of_simulate(folder):
+    import curves, maps, sides
+    from data import read_csv
+    side = sides.from_folder(folder, "simulated", "synthetic")
+    yield "map", maps.single(_file(folder, "elevation.tif"), _file(folder, "network.gpkg"))[0]
+    yield "hypsometry", curves.hypsometry([side])
+    yield "slope_area", curves.slope_area(side, theory=sides.theory(folder, side))
+    yield "history", curves.history(read_csv(folder, "history.csv"))
+
+
+def figures_of_fit(folder):
+    import curves, style
+    from data import read_csv, require_json
+    fit, table = require_json(folder, "fit.json"), read_csv(folder, "fit.csv")
+    side = curves.Side("target", style.LOOK["real"])
+    side.bins = tuple(table.get(name, ()) for name in ("area_m2", "slope", "slope_se"))
+    curve = curves.fitted_curve(fit, table)
+    label = curves.law_label(fit.get("theta"), fit.get("theta_se"))
+    yield "slope_area", curves.slope_area(side, fit=curve and (curve, label))
+
+
+def figures_of_compare(folder):
+    import curves, sides
+    from data import require_json
+    comparison = require_json(folder, "comparison.json")
+    pair = [sides.from_comparison(comparison, "a", folder, sides.name_of(comparison, "a"), "real"),
+            sides.from_comparison(comparison, "b", folder, sides.name_of(comparison, "b"), "synthetic")]
+    yield "slope_area", curves.slope_area_pair(pair, fits=[curves.summary_line(side) for side in pair])
+    yield "hypsometry", curves.hypsometry(pair)
+    yield "horton", curves.horton(pair)
+
+
+FIGURES = {"analyze": figures_of_analyze, "simulate": figures_of_simulate, "fit": figures_of_fit,
+           "compare": figures_of_compare}
+
+
+def _file(folder, name):
+    return os.path.join(folder, name)
+
+
+def write(path, content):
+    """Whole or not at all."""
+    handle, temporary = tempfile.mkstemp(dir=os.path.dirname(path), prefix=".figure")
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(content)
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except OSError:
+        os.unlink(temporary)
+        raise
+
+
+def run(command, folder):
+    import style
+    style.prepare()
+    if command == "report":
+        import report
+        write(os.path.join(folder, "report.html"), report.page(folder).encode())
+        return
+    target = os.path.join(folder, "figures")
+    os.makedirs(target, exist_ok=True)
+    for name, drawing in FIGURES[command](folder):
+        dpi = style.MAP_DPI if name == "map" else style.DPI
+        write(os.path.join(target, name + ".png"), style.png(drawing, dpi))
+
+
+def main(arguments):
+    commands = [*FIGURES, "report"]
+    if len(arguments) != 2 or arguments[0] not in commands:
+        print(f"usage: thalweg_figures.py {'|'.join(commands)} DIR", file=sys.stderr)
+        return 1
+    if not os.path.isdir(arguments[1]):
+        print(f"{arguments[1]} is not a folder", file=sys.stderr)
+        return 1
+    try:
+        run(*arguments)
+    except Exception as error:  # the caller shows one line, whatever it is
+        print(f"{type(error).__name__}: {error}".replace("Missing: ", "").splitlines()[0], file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
