@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "thalweg/channel/horton.hpp"
+#include "thalweg/channel/network.hpp"
+#include "thalweg/channel/slope_area.hpp"
+#include "thalweg/core/raster.hpp"
+#include "thalweg/terrain/basins.hpp"
+#include "thalweg/terrain/hypsometry.hpp"
+
+namespace thalweg::study {
+
+/// What becomes of pits before routing.
+enum class Conditioning {
+    fill,   ///< filled to their pass, flats drained
+    carve,  ///< cut through at their pass
+    none    ///< they keep their water
+};
+
+struct MeasureOptions {
+    Conditioning conditioning = Conditioning::fill;
+    std::optional<double> channel_area_m2;                        ///< default: 0.1 % of the area, rounded to 1-2-5
+    terrain::EdgeBasins edge_basins = terrain::EdgeBasins::drop;
+};
+
+/// A terrain once it is routed: a DEM, a simulated mesh and a grown network look the same from here on.
+struct RoutedTerrain {
+    terrain::FlowGraph graph;
+    std::vector<double> elevation_m;           ///< on which the flow falls (filled or carved); NaN: no data
+    std::vector<double> cell_area_m2;
+    std::vector<double> drainage_area_m2;
+    std::vector<std::uint8_t> complete;        ///< 1 where the whole upslope area is known
+};
+
+struct BasinStatistics {
+    terrain::Basin basin;
+    double relief_m;
+    double hypsometric_integral;
+    Index max_strahler;
+};
+
+/// Channels and what is counted on them. Lengths in metres, areas in m².
+struct ChannelStatistics {
+    double threshold_area_m2;
+    double basin_area_m2;           ///< area of the basins used
+    double share_used;              ///< of the channel nodes, in complete catchments
+    Index nodes;                    ///< channel nodes used
+    Index sources, links, junctions, outlets;
+    double total_length_m;
+    double drainage_density_per_m;  ///< total length over the area of the basins used
+    Index max_strahler, max_shreve;
+};
+
+/// Every statistic of one terrain.
+struct Statistics {
+    terrain::Hypsometry hypsometry;
+    ChannelStatistics channels;
+    std::vector<channel::OrderStatistics> strahler;
+    channel::HortonRatios horton;
+    channel::SlopeArea slope_area;
+    std::vector<channel::SlopeAreaPoint> slope_area_points;
+    std::vector<BasinStatistics> basins;
+    channel::StreamNetwork network;
+    std::vector<Index> basin_of;    ///< number of each node's basin, `none` outside
+};
+
+/// The one pipeline behind analyze, simulate and compare: `slopes` are the slope–area points measured on the terrain in
+/// the way that suits it (segments of carved profiles on a raster, nodes on a mesh).
+Statistics measure(const RoutedTerrain&, const MeasureOptions&, std::vector<channel::SlopeAreaPoint> slopes,
+                   double area_m2);
+
+/// How a DEM was made to drain.
+struct ConditioningReport {
+    Index pits = 0;             ///< lakes: pits (or flats) that drained nowhere
+    Index cells_changed = 0;
+    double volume_m3 = 0;       ///< filled, or cut away
+    Index flat_cells = 0;       ///< that needed a direction by the flat rule
+};
+
+/// A measured DEM with the rasters that the measuring made.
+struct RasterMeasurement {
+    RoutedTerrain terrain;
+    FlowDirections directions;
+    ConditioningReport conditioning;
+    Index valid_cells = 0;
+    double area_m2 = 0;
+    std::vector<double> carved_elevation_m;    ///< along which slopes are measured
+    double segment_drop_m = 0;                 ///< of the slope–area segments
+    double vertical_quantum_m = 0;
+    Statistics statistics;
+};
+
+/// Conditions, routes and measures a DEM. Throws Error when there is nothing to measure.
+RasterMeasurement measure_raster(const Raster&, const MeasureOptions&);
+
+/// The threshold of channels by default: 0.1 % of the area rounded to 1, 2 or 5 times a power of ten.
+double default_channel_area(double area_m2);
+
+}  // namespace thalweg::study

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace thalweg::study {
+
+enum class IfPresent { refuse, replace };
+
+/// A folder that appears whole or not at all: files are written into a hidden neighbour, which takes the final name in
+/// one rename on `commit`. Without a commit nothing is left behind, and what stood there before is still there. A folder
+/// that holds something else than our results is never replaced.
+class OutputFolder {
+  public:
+    /// Throws Error if `final` exists and may not be replaced, or its parent cannot be written.
+    OutputFolder(std::filesystem::path final, IfPresent);
+    ~OutputFolder();
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+
+    /// Where to write for now.
+    const std::filesystem::path& path() const { return partial_; }
+    void commit();
+
+  private:
+    void discard();
+
+    std::filesystem::path final_;
+    std::filesystem::path partial_;
+    std::vector<std::filesystem::path> created_parents_;   ///< innermost first
+    bool committed_ = false;
+};
+
+/// Writes a text file whole; throws Error if the disk is full or it cannot be written.
+void write_text(const std::filesystem::path&, const std::string&);
+
+/// Contents of a text file; throws Error if it cannot be read.
+std::string read_text(const std::filesystem::path&);
+
+}  // namespace thalweg::study

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "thalweg/core/index.hpp"
+#include "thalweg/evolve/uplift.hpp"
+#include "thalweg/terrain/route.hpp"
+
+namespace thalweg::study {
+
+enum class MeshKind { tin, raster };
+enum class OutletRule { all, dem };
+enum class NoiseKind { perlin, uniform };
+enum class InitialSurface { noise, dem };
+enum class Solver { implicit, steady };
+enum class Interpolation { linear };
+enum class FitMethod { slope_area };
+
+/// Everything an experiment file can say, with the defaults for what it does not say. Each member is described once, in
+/// `describe` below: reading, overriding, writing, `--help` and the reference page all follow from there.
+struct Experiment {
+    std::uint64_t seed = 1;
+    std::optional<OutletRule> outlets;                ///< default: `dem` where the domain is a DEM's basin, else `all`
+    struct {
+        std::vector<double> size_m;
+        std::optional<Index> nodes;
+        std::optional<double> spacing_m;
+        MeshKind mesh = MeshKind::tin;
+        std::optional<std::filesystem::path> dem;
+        InitialSurface initial = InitialSurface::noise;
+    } domain;
+    struct {
+        double rate_m_per_yr = 1e-3;
+        evolve::Pattern pattern = evolve::Pattern::constant;
+    } uplift;
+    struct {
+        std::optional<double> k;
+        std::optional<double> m;
+        double n = 1;
+        terrain::Receiver receiver = terrain::Receiver::steepest;
+    } river;
+    struct {
+        NoiseKind noise = NoiseKind::perlin;
+        double amplitude_m = 0.01;
+    } initial;
+    struct {
+        std::optional<double> talus_angle_deg;
+    } hillslope;
+    struct {
+        Solver solver = Solver::implicit;
+        double step_yr = 100000;
+        Index max_steps = 5000;
+        double convergence = 1e-3;
+    } time;
+    struct {
+        std::optional<Index> resolution;
+        Interpolation interpolation = Interpolation::linear;
+    } output;
+    struct {
+        std::optional<std::filesystem::path> dem;
+        std::optional<double> uplift_m_per_yr;
+        double uplift_sd_m_per_yr = 0;
+        FitMethod method = FitMethod::slope_area;
+        std::optional<double> channel_area_m2;
+        std::optional<double> area_min_m2;
+        std::optional<double> area_max_m2;
+    } study;
+};
+
+/// What a parameter means: shown by `--help`, written beside its value, checked on reading.
+struct Field {
+    std::string_view key;                                          ///< "river.k"
+    std::string_view unit;                                         ///< "" where it has none
+    std::string_view text;
+    double smallest = -std::numeric_limits<double>::infinity();
+    double largest = std::numeric_limits<double>::infinity();
+    bool smallest_excluded = false;
+};
+
+/// The words that stand for the values of an enumeration.
+template <class E>
+using Words = std::vector<std::pair<std::string_view, E>>;
+const Words<MeshKind>& words(MeshKind);
+const Words<OutletRule>& words(OutletRule);
+const Words<NoiseKind>& words(NoiseKind);
+const Words<InitialSurface>& words(InitialSurface);
+const Words<Solver>& words(Solver);
+const Words<Interpolation>& words(Interpolation);
+const Words<FitMethod>& words(FitMethod);
+const Words<evolve::Pattern>& words(evolve::Pattern);
+const Words<terrain::Receiver>& words(terrain::Receiver);
+
+/// Calls visit(field, member) for every parameter, in the order of the file.
+template <class AnyExperiment, class Visit>
+void describe(AnyExperiment& e, Visit visit) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    visit(Field{"seed", "", "seed of everything random", 0}, e.seed);
+    visit(Field{"outlets", "", "where water leaves: the whole rim, or the outlet of the DEM's basin"}, e.outlets);
+    visit(Field{"domain.size_m", "m", "width and height of a rectangle", 0, infinity, true}, e.domain.size_m);
+    visit(Field{"domain.nodes", "", "number of nodes (a TIN meets it within 2 %)", 16, 2147483647}, e.domain.nodes);
+    visit(Field{"domain.spacing_m", "m", "distance of nodes, instead of their number", 0, infinity, true},
+          e.domain.spacing_m);
+    visit(Field{"domain.mesh", "", "Poisson-disk points and their Delaunay triangles, or square cells"}, e.domain.mesh);
+    visit(Field{"domain.dem", "", "DEM whose largest complete basin is the domain, instead of a rectangle"},
+          e.domain.dem);
+    visit(Field{"domain.initial", "", "start from noise, or from the DEM's own heights"}, e.domain.initial);
+    visit(Field{"uplift.rate_m_per_yr", "m/yr", "largest uplift rate", 0}, e.uplift.rate_m_per_yr);
+    visit(Field{"uplift.pattern", "", "shape of the uplift over the domain"}, e.uplift.pattern);
+    visit(Field{"river.k", "m^(1-2m)/yr", "erodibility", 0, infinity, true}, e.river.k);
+    visit(Field{"river.m", "", "exponent of the drainage area", 0, 5}, e.river.m);
+    visit(Field{"river.n", "", "exponent of the slope", 0.3, 5}, e.river.n);
+    visit(Field{"river.receiver", "", "neighbour that takes the water"}, e.river.receiver);
+    visit(Field{"initial.noise", "", "roughness of the initial surface"}, e.initial.noise);
+    visit(Field{"initial.amplitude_m", "m", "height of that roughness", 0}, e.initial.amplitude_m);
+    visit(Field{"hillslope.talus_angle_deg", "degrees", "steepest stable slope; absent: no limit", 0, 90, true},
+          e.hillslope.talus_angle_deg);
+    visit(Field{"time.solver", "", "implicit time stepping, or the steady state directly"}, e.time.solver);
+    visit(Field{"time.step_yr", "yr", "time step", 0, infinity, true}, e.time.step_yr);
+    visit(Field{"time.max_steps", "", "most steps (or sweeps of the steady solver)", 1, 1e9}, e.time.max_steps);
+    visit(Field{"time.convergence", "", "stop when the mean rate is below this share of the mean uplift; 0: never", 0},
+          e.time.convergence);
+    visit(Field{"output.resolution", "", "cells along the longer side of the heightfield", 2, 100000},
+          e.output.resolution);
+    visit(Field{"output.interpolation", "", "how a TIN becomes a heightfield"}, e.output.interpolation);
+    visit(Field{"study.dem", "", "the DEM to be explained"}, e.study.dem);
+    visit(Field{"study.uplift_m_per_yr", "m/yr", "uplift rate of the real landscape (k cannot be told without)", 0,
+                infinity, true},
+          e.study.uplift_m_per_yr);
+    visit(Field{"study.uplift_sd_m_per_yr", "m/yr", "standard deviation of that rate", 0}, e.study.uplift_sd_m_per_yr);
+    visit(Field{"study.method", "", "what is matched"}, e.study.method);
+    visit(Field{"study.channel_area_m2", "m2", "drainage area where channels begin", 0, infinity, true},
+          e.study.channel_area_m2);
+    visit(Field{"study.area_min_m2", "m2", "smallest drainage area in the fit", 0}, e.study.area_min_m2);
+    visit(Field{"study.area_max_m2", "m2", "largest drainage area in the fit", 0, infinity, true},
+          e.study.area_max_m2);
+}
+
+/// Reads an experiment file (TOML), applies overrides of the form "river.k=2e-5" and checks every value. Paths are
+/// relative to the file. Throws Error, one sentence: no file, not TOML (with the line), an unknown key (with the nearest
+/// known one), a wrong type, a value out of range.
+Experiment read_experiment(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
+
+/// The experiment as TOML with every value and unit, such that reading it again gives the same experiment.
+std::string to_toml(const Experiment&);
+
+/// One line per parameter, for `--help`.
+std::string experiment_reference();
+
+}  // namespace thalweg::study

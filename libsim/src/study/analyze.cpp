@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/analyze.hpp"
+
+#include <fmt/format.h>
+
+#include <numeric>
+
+#include "study/report_json.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/io/polygonize.hpp"
+#include "thalweg/io/table_file.hpp"
+#include "thalweg/study/manifest.hpp"
+#include "thalweg/study/output_folder.hpp"
+#include "thalweg/study/tables.hpp"
+
+namespace thalweg::study {
+namespace {
+
+TerrainInput input_of(const NamedRaster& dem, const RasterMeasurement& m) {
+    const Grid& grid = dem.raster.grid;
+    const double rows = grid.rows;
+    const double mean_dx = std::accumulate(grid.east_west.begin(), grid.east_west.end(), 0.0) / rows;
+    const double mean_dy = std::accumulate(grid.north_south.begin(), grid.north_south.end(), 0.0) / (rows - 1);
+    return {.file = dem.file,
+            .sha256 = dem.sha256,
+            .crs = dem.crs_name,
+            .geographic = dem.raster.placement.geographic,
+            .rows = grid.rows,
+            .cols = grid.cols,
+            .dx_m = mean_dx,
+            .dy_m = mean_dy,
+            .valid_cells = m.valid_cells,
+            .nodata_cells = grid.size() - m.valid_cells,
+            .area_m2 = m.area_m2};
+}
+
+Json conditioning_json(const ConditioningReport& c, Conditioning method) {
+    constexpr std::array names{"fill", "carve", "none"};
+    return {{"method", names[static_cast<std::size_t>(method)]},
+            {"pits", c.pits},
+            {"cells_changed", c.cells_changed},
+            {"volume_m3", c.volume_m3},
+            {"flat_cells", c.flat_cells}};
+}
+
+/// ESRI's codes: 1 << slot, 0 where water leaves, 255 without data.
+std::vector<double> esri_codes(const FlowDirections& directions, std::span<const double> elevation_m) {
+    std::vector<double> codes(directions.size());
+    for (std::size_t i = 0; i < codes.size(); ++i) {
+        if (std::isnan(elevation_m[i])) codes[i] = 255;
+        else codes[i] = directions[i] == no_flow ? 0 : 1 << directions[i];
+    }
+    return codes;
+}
+
+/// A number of the links on their nodes, 0 elsewhere; a shared node takes that of the link it begins.
+std::vector<double> on_channels(const channel::StreamNetwork& network, const std::vector<Index>& numbers, Index size) {
+    std::vector<double> values(size, 0.0);
+    for (Index link = network.size(); link-- > 0;) {
+        const auto nodes = network.nodes_of(link);
+        const bool ends_here = network.downstream[link] == none;
+        for (const Index node : nodes.first(nodes.size() - (ends_here ? 0 : 1))) values[node] = numbers[link];
+    }
+    return values;
+}
+
+void write_rasters(const Raster& dem, const RasterMeasurement& m, const std::filesystem::path& folder) {
+    const auto write = [&](const char* name, std::span<const double> values, io::Layer layer) {
+        io::write_raster(folder / name, dem.grid, dem.placement, values, layer);
+    };
+    write("filled.tif", m.terrain.elevation_m, {.nodata = {}, .description = "conditioned elevation (m)"});
+    write("drainage_area.tif", [&] {
+        std::vector<double> area = m.terrain.drainage_area_m2;
+        for (std::size_t i = 0; i < area.size(); ++i) {
+            if (std::isnan(dem.values[i])) area[i] = dem.values[i];
+        }
+        return area;
+    }(), {.nodata = {}, .description = "drainage area (m2)"});
+    write("flow_direction.tif", esri_codes(m.directions, dem.values),
+          {.type = io::CellType::uint8, .nodata = 255, .description = "D8 direction (ESRI codes, 0 outlet)"});
+    const auto& network = m.statistics.network;
+    write("strahler.tif", on_channels(network, network.strahler, dem.grid.size()),
+          {.type = io::CellType::uint8, .nodata = {}, .description = "Strahler order (0: no channel)"});
+    write("shreve.tif", on_channels(network, network.shreve, dem.grid.size()),
+          {.type = io::CellType::int32, .nodata = {}, .description = "Shreve magnitude (0: no channel)"});
+}
+
+void write_tables(const Raster& dem, const Statistics& s, const std::filesystem::path& folder) {
+    const PositionOf position = positions(dem);
+    auto outlines = io::cell_outlines(dem, s.basin_of, static_cast<Index>(s.basins.size()));
+    io::write_geopackage(folder / "network.gpkg",
+                         {links_table(s.network, position), junctions_table(s.network, position),
+                          basins_table(s, position, std::move(outlines))},
+                         dem.placement.crs_wkt);
+    io::write_csv(folder / "hypsometry.csv", hypsometry_table(s.hypsometry));
+    io::write_csv(folder / "slope_area.csv", slope_area_table(s.slope_area.bins));
+    io::write_csv(folder / "slope_area_points.csv", slope_area_points_table(s.slope_area_points));
+}
+
+}  // namespace
+
+NamedRaster read_dem(const std::filesystem::path& path, const io::ReadOptions& options, const Messages& messages) {
+    messages.progress(fmt::format("reading {}", path.string()));
+    io::ReadResult result = io::read_raster(path, options);
+    for (const std::string& warning : result.warnings) messages.warning(warning);
+    return {.raster = std::move(result.raster),
+            .file = path.filename().string(),
+            .sha256 = sha256_of(path),
+            .crs_name = result.crs_name,
+            .warnings = std::move(result.warnings)};
+}
+
+std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const std::filesystem::path& folder,
+                    const Messages& messages) {
+    messages.progress("routing flow and measuring");
+    const RasterMeasurement m = measure_raster(dem.raster, options);
+    std::vector<std::string> notes = dem.warnings;
+    Json summary = terrain_json(input_of(dem, m), m.statistics, positions(dem.raster),
+                                conditioning_json(m.conditioning, options.conditioning), notes);
+    summary["measured_on"] = "raster";
+    summary["slope_area"]["segment_drop_m"] = m.segment_drop_m;
+    summary["slope_area"]["vertical_quantum_m"] = m.vertical_quantum_m;
+    summary["notes"] = notes;
+    messages.progress("writing");
+    write_rasters(dem.raster, m, folder);
+    write_tables(dem.raster, m.statistics, folder);
+    std::string text = text_of(summary);
+    write_text(folder / "summary.json", text);
+    return text;
+}
+
+}  // namespace thalweg::study

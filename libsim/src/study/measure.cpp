@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/measure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <utility>
+
+#include "thalweg/core/error.hpp"
+#include "thalweg/terrain/accumulate.hpp"
+#include "thalweg/terrain/flats.hpp"
+#include "thalweg/terrain/lakes.hpp"
+#include "thalweg/terrain/route.hpp"
+
+namespace thalweg::study {
+namespace {
+
+double total_area(const RoutedTerrain& terrain) {
+    double area = 0;
+    for (const Index node : terrain.graph.order) area += terrain.cell_area_m2[node];
+    return area;
+}
+
+std::size_t count(const std::vector<std::uint8_t>& flags) {
+    return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), std::uint8_t{1}));
+}
+
+ChannelStatistics channel_statistics(const channel::StreamNetwork& network, double threshold_m2, double basin_area_m2) {
+    ChannelStatistics c{};
+    c.threshold_area_m2 = threshold_m2;
+    c.basin_area_m2 = basin_area_m2;
+    c.links = network.size();
+    std::vector<std::uint8_t> has_upstream(network.size(), 0);
+    for (const Index below : network.downstream) {
+        if (below == none) ++c.outlets;
+        else if (!std::exchange(has_upstream[below], std::uint8_t{1})) ++c.junctions;
+    }
+    for (Index link = 0; link < network.size(); ++link) {
+        c.sources += !has_upstream[link];
+        c.total_length_m += network.length_m[link];
+        c.max_strahler = std::max(c.max_strahler, network.strahler[link]);
+        c.max_shreve = std::max(c.max_shreve, network.shreve[link]);
+    }
+    c.drainage_density_per_m =
+        basin_area_m2 > 0 ? c.total_length_m / basin_area_m2 : std::numeric_limits<double>::quiet_NaN();
+    return c;
+}
+
+/// Relief, hypsometric integral and order of every basin in one pass over the nodes.
+std::vector<BasinStatistics> basin_statistics(const RoutedTerrain& terrain, std::span<const double> ground_m,
+                                              const std::vector<terrain::Basin>& basins, const Statistics& s) {
+    struct Sums {
+        double lowest = std::numeric_limits<double>::infinity();
+        double highest = -std::numeric_limits<double>::infinity();
+        double area = 0, volume = 0;
+    };
+    std::vector<Sums> sums(basins.size());
+    for (Index node = 0; node < terrain.graph.size(); ++node) {
+        if (s.basin_of[node] == none) continue;
+        Sums& sum = sums[s.basin_of[node]];
+        sum.lowest = std::min(sum.lowest, ground_m[node]);
+        sum.highest = std::max(sum.highest, ground_m[node]);
+        sum.area += terrain.cell_area_m2[node];
+        sum.volume += terrain.cell_area_m2[node] * ground_m[node];
+    }
+    std::vector<BasinStatistics> result;
+    for (std::size_t b = 0; b < basins.size(); ++b) {
+        const double relief = sums[b].highest - sums[b].lowest;
+        const double mean_height = sums[b].volume / sums[b].area - sums[b].lowest;
+        const double integral = relief > 0 ? mean_height / relief : std::numeric_limits<double>::quiet_NaN();
+        result.push_back({basins[b], relief, integral, 0});
+    }
+    for (Index link = 0; link < s.network.size(); ++link) {
+        const Index basin = s.basin_of[s.network.nodes_of(link).front()];
+        if (basin != none) {
+            result[basin].max_strahler = std::max(result[basin].max_strahler, s.network.strahler[link]);
+        }
+    }
+    return result;
+}
+
+/// Relief of the largest basin of the statistics, or of everything where there is none: what 2.5 % are taken of.
+double reference_relief(const RasterMeasurement& m, std::span<const double> ground_m, double threshold_m2,
+                        terrain::EdgeBasins edge_basins) {
+    const auto basins = terrain::basins(m.terrain.graph, m.terrain.drainage_area_m2, m.terrain.complete, threshold_m2,
+                                        edge_basins);
+    const auto labels = terrain::basin_labels(m.terrain.graph, std::span(basins).first(basins.empty() ? 0 : 1));
+    double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
+    for (const Index node : m.terrain.graph.order) {
+        if (!basins.empty() && labels[node] != 0) continue;
+        lowest = std::min(lowest, ground_m[node]);
+        highest = std::max(highest, ground_m[node]);
+    }
+    return highest - lowest;
+}
+
+/// The terrain along which slopes are measured: never filled, cut through where pits were.
+RoutedTerrain carved_terrain(const Raster& raster, const std::vector<Boundary>& boundary, ConditioningReport& report) {
+    const Grid& grid = raster.grid;
+    RoutedTerrain t;
+    FlowDirections directions = terrain::route(grid, raster.values, boundary);
+    report.flat_cells = terrain::resolve_flats(grid, raster.values, boundary, directions);
+    report.pits = terrain::drain_lakes(grid, raster.values, boundary, directions);
+    t.graph = terrain::flow_graph(grid, raster.values, directions);
+    t.elevation_m = terrain::carve(t.graph, raster.values);
+    t.cell_area_m2 = terrain::cell_areas(grid);
+    t.drainage_area_m2 = terrain::accumulate(t.graph, t.cell_area_m2);
+    t.complete = terrain::complete_catchments(grid, t.graph, boundary);
+    return t;
+}
+
+/// Directions on the raster as the user asked it to be conditioned, and the surface they fall on.
+FlowDirections conditioned_directions(const Raster& raster, const std::vector<Boundary>& boundary,
+                                      Conditioning conditioning, std::vector<double>& surface, Index& flat_cells) {
+    surface = conditioning == Conditioning::fill ? terrain::fill(raster.grid, raster.values, boundary) : raster.values;
+    FlowDirections directions = terrain::route(raster.grid, surface, boundary);
+    flat_cells = terrain::resolve_flats(raster.grid, surface, boundary, directions);
+    if (conditioning == Conditioning::carve) terrain::drain_lakes(raster.grid, surface, boundary, directions);
+    return directions;
+}
+
+void report_changes(const Raster& raster, const std::vector<double>& surface, ConditioningReport& report) {
+    for (Index node = 0; node < raster.grid.size(); ++node) {
+        const double change = std::abs(surface[node] - raster.values[node]);
+        if (!(change > 0)) continue;
+        ++report.cells_changed;
+        report.volume_m3 += change * raster.grid.area(node);
+    }
+}
+
+std::vector<channel::SlopeAreaPoint> segments(const RoutedTerrain& carved, RasterMeasurement& m,
+                                              const MeasureOptions& options, double threshold_m2,
+                                              std::span<const double> ground_m) {
+    const double relief = reference_relief(m, ground_m, threshold_m2, options.edge_basins);
+    m.vertical_quantum_m = channel::vertical_quantum(ground_m);
+    m.segment_drop_m = std::max(0.025 * relief, 3 * m.vertical_quantum_m);
+    if (!(m.segment_drop_m > 0)) return {};
+    const bool keep = options.edge_basins == terrain::EdgeBasins::keep;
+    return channel::fixed_drop_segments(carved.graph, carved.drainage_area_m2, carved.elevation_m,
+                                        keep ? std::span<const std::uint8_t>{} : carved.complete,
+                                        {.drop_m = m.segment_drop_m, .smallest_area_m2 = threshold_m2});
+}
+
+}  // namespace
+
+double default_channel_area(double area_m2) {
+    const double target = 1e-3 * area_m2;
+    const double decade = std::pow(10.0, std::floor(std::log10(target)));
+    double best = decade;
+    for (const double candidate : {2 * decade, 5 * decade, 10 * decade}) {
+        if (std::abs(std::log(candidate / target)) < std::abs(std::log(best / target))) best = candidate;
+    }
+    return best;
+}
+
+Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_m, const MeasureOptions& options,
+                   std::vector<channel::SlopeAreaPoint> slopes) {
+    const double threshold = options.channel_area_m2.value_or(default_channel_area(total_area(terrain)));
+    const bool keep = options.edge_basins == terrain::EdgeBasins::keep;
+    const std::span<const std::uint8_t> used = keep ? std::span<const std::uint8_t>{} : terrain.complete;
+
+    Statistics s;
+    s.hypsometry = terrain::hypsometry(ground_m, terrain.cell_area_m2);
+    const auto all_channels = channel::channels_by_area(terrain.drainage_area_m2, threshold);
+    const auto channels = channel::channels_by_area(terrain.drainage_area_m2, threshold, used);
+    s.network = channel::stream_network(terrain.graph, channels, terrain.drainage_area_m2, terrain.elevation_m);
+
+    const auto basins =
+        terrain::basins(terrain.graph, terrain.drainage_area_m2, terrain.complete, threshold, options.edge_basins);
+    s.basin_of = terrain::basin_labels(terrain.graph, basins);
+    s.basins = basin_statistics(terrain, ground_m, basins, s);
+    const double basin_area =
+        std::accumulate(basins.begin(), basins.end(), 0.0, [](double sum, const auto& b) { return sum + b.area_m2; });
+
+    s.channels = channel_statistics(s.network, threshold, basin_area);
+    s.channels.nodes = static_cast<Index>(count(channels));
+    const std::size_t everywhere = count(all_channels);
+    s.channels.share_used = everywhere > 0 ? static_cast<double>(s.channels.nodes) / static_cast<double>(everywhere)
+                                           : std::numeric_limits<double>::quiet_NaN();
+    s.strahler = channel::strahler_statistics(s.network);
+    s.horton = channel::horton_ratios(s.strahler);
+    s.slope_area = channel::fit_slope_area(channel::slope_area_bins(slopes));
+    s.slope_area_points = std::move(slopes);
+    return s;
+}
+
+RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& options) {
+    const auto boundary = terrain::data_edge(raster.grid, raster.values);
+    RasterMeasurement m;
+    RoutedTerrain carved = carved_terrain(raster, boundary, m.conditioning);
+    m.carved_elevation_m = carved.elevation_m;
+
+    std::vector<double> surface;
+    m.directions =
+        conditioned_directions(raster, boundary, options.conditioning, surface, m.conditioning.flat_cells);
+    m.terrain.graph = terrain::flow_graph(raster.grid, surface, m.directions);
+    m.terrain.cell_area_m2 = carved.cell_area_m2;
+    m.terrain.drainage_area_m2 = terrain::accumulate(m.terrain.graph, m.terrain.cell_area_m2);
+    m.terrain.complete = terrain::complete_catchments(raster.grid, m.terrain.graph, boundary);
+    if (options.conditioning == Conditioning::carve) surface = terrain::carve(m.terrain.graph, surface);
+    report_changes(raster, surface, m.conditioning);
+    m.terrain.elevation_m = std::move(surface);
+
+    m.valid_cells = static_cast<Index>(m.terrain.graph.order.size());
+    m.area_m2 = total_area(m.terrain);
+    MeasureOptions resolved = options;
+    if (!resolved.channel_area_m2) resolved.channel_area_m2 = default_channel_area(m.area_m2);
+    auto slopes = segments(carved, m, resolved, *resolved.channel_area_m2, raster.values);
+    m.statistics = measure(m.terrain, raster.values, resolved, std::move(slopes));
+    return m;
+}
+
+}  // namespace thalweg::study

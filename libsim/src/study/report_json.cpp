@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/report_json.hpp"
+
+#include <fmt/format.h>
+
+#include "thalweg/core/error.hpp"
+#include "thalweg/study/output_folder.hpp"
+
+namespace thalweg::study {
+namespace {
+
+Json whole_or_null(Index value) { return value > 0 ? Json(value) : Json(nullptr); }
+Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
+
+Json input_json(const TerrainInput& input, const terrain::Hypsometry& h) {
+    return {{"file", text_or_null(input.file)},
+            {"sha256", text_or_null(input.sha256)},
+            {"crs", text_or_null(input.crs)},
+            {"geographic", input.geographic},
+            {"rows", whole_or_null(input.rows)},
+            {"cols", whole_or_null(input.cols)},
+            {"dx_m", input.dx_m > 0 ? Json(input.dx_m) : Json(nullptr)},
+            {"dy_m", input.dy_m > 0 ? Json(input.dy_m) : Json(nullptr)},
+            {"valid_cells", input.valid_cells},
+            {"nodata_cells", input.nodata_cells},
+            {"area_m2", input.area_m2},
+            {"elevation_min_m", number(h.minimum_m)},
+            {"elevation_max_m", number(h.maximum_m)},
+            {"elevation_mean_m", number(h.mean_m)}};
+}
+
+Json hypsometry_json(const terrain::Hypsometry& h) {
+    return {{"integral", number(h.integral)},
+            {"integral_by_curve", number(h.integral_by_curve)},
+            {"skewness", number(h.skewness)},
+            {"kurtosis", number(h.kurtosis)},
+            {"relative_area", numbers(h.relative_area)},
+            {"relative_height", numbers(h.relative_height)}};
+}
+
+Json channels_json(const ChannelStatistics& c) {
+    return {{"threshold_area_m2", c.threshold_area_m2},
+            {"basin_area_m2", c.basin_area_m2},
+            {"share_used", number(c.share_used)},
+            {"cells", c.nodes},
+            {"sources", c.sources},
+            {"links", c.links},
+            {"junctions", c.junctions},
+            {"outlets", c.outlets},
+            {"total_length_m", c.total_length_m},
+            {"drainage_density_per_m", number(c.drainage_density_per_m)},
+            {"constant_of_channel_maintenance_m", number(1 / c.drainage_density_per_m)},
+            {"max_strahler", c.max_strahler},
+            {"max_shreve", c.max_shreve}};
+}
+
+Json strahler_json(const std::vector<channel::OrderStatistics>& orders) {
+    Json list = Json::array();
+    for (const auto& o : orders) {
+        list.push_back({{"order", o.order},
+                        {"streams", o.streams},
+                        {"mean_length_m", number(o.mean_length_m)},
+                        {"mean_area_m2", number(o.mean_area_m2)},
+                        {"mean_slope", number(o.mean_slope)},
+                        {"mean_drop_m", number(o.mean_drop_m)}});
+    }
+    return list;
+}
+
+Json ratio_json(const channel::HortonRatio& ratio) {
+    return {{"regression", number(ratio.regression)}, {"mean_ratio", number(ratio.mean_ratio)}};
+}
+
+Json slope_area_json(const channel::SlopeArea& s) {
+    Json bins = Json::array();
+    for (const auto& bin : s.bins) {
+        bins.push_back({{"area_m2", bin.area_m2},
+                        {"slope", bin.slope},
+                        {"slope_se", number(bin.slope_se)},
+                        {"count", bin.count}});
+    }
+    return {{"theta", number(s.theta.value)},
+            {"theta_se", number(s.theta.standard_error)},
+            {"theta_ci95", interval(s.theta)},
+            {"ks", number(s.ks.value)},
+            {"ks_se", number(s.ks.standard_error)},
+            {"r2", number(s.r2)},
+            {"bins", bins}};
+}
+
+Json basins_json(const Statistics& s, const PositionOf& position) {
+    Json list = Json::array();
+    for (std::size_t b = 0; b < s.basins.size(); ++b) {
+        const BasinStatistics& basin = s.basins[b];
+        const Point outlet = position(basin.basin.outlet);
+        list.push_back({{"id", b},
+                        {"outlet_x", outlet.x},
+                        {"outlet_y", outlet.y},
+                        {"area_m2", basin.basin.area_m2},
+                        {"complete", basin.basin.complete},
+                        {"relief_m", basin.relief_m},
+                        {"hypsometric_integral", number(basin.hypsometric_integral)},
+                        {"max_strahler", basin.max_strahler}});
+    }
+    return list;
+}
+
+void explain_nulls(const Statistics& s, std::vector<std::string>& notes) {
+    if (!std::isfinite(s.hypsometry.integral)) notes.push_back("hypsometry: the terrain has no relief");
+    if (s.basins.empty()) {
+        notes.push_back(
+            "channels: no catchment of at least the channel threshold lies wholly within the data, so there are no "
+            "network statistics; lower --channel-area-m2, or use --keep-edge-basins to count cut catchments too");
+    } else if (s.channels.max_strahler < 2) {
+        notes.push_back("horton: the ratios need at least two Strahler orders");
+    }
+    if (s.slope_area.bins.size() < 3) {
+        notes.push_back("slope_area: fewer than three bins of drainage area, so no line was fitted");
+    }
+    for (const auto& bin : s.slope_area.bins) {
+        if (bin.count > 1) continue;
+        notes.push_back("slope_area: a bin with a single point has no standard error");
+        break;
+    }
+}
+
+}  // namespace
+
+Json numbers(std::span<const double> values) {
+    Json list = Json::array();
+    for (const double value : values) list.push_back(number(value));
+    return list;
+}
+
+Json interval(const Estimate& estimate) {
+    if (!std::isfinite(estimate.interval95[0]) || !std::isfinite(estimate.interval95[1])) return nullptr;
+    return numbers(estimate.interval95);
+}
+
+Json terrain_json(const TerrainInput& input, const Statistics& s, const PositionOf& position, Json conditioning,
+                  std::vector<std::string>& notes) {
+    explain_nulls(s, notes);
+    return {{"input", input_json(input, s.hypsometry)},
+            {"conditioning", std::move(conditioning)},
+            {"hypsometry", hypsometry_json(s.hypsometry)},
+            {"channels", channels_json(s.channels)},
+            {"strahler", strahler_json(s.strahler)},
+            {"horton",
+             {{"RB", ratio_json(s.horton.bifurcation)},
+              {"RL", ratio_json(s.horton.length)},
+              {"RA", ratio_json(s.horton.area)},
+              {"RS", ratio_json(s.horton.slope)}}},
+            {"slope_area", slope_area_json(s.slope_area)},
+            {"basins", basins_json(s, position)}};
+}
+
+std::string text_of(const Json& json) { return json.dump(2) + "\n"; }
+
+Json read_json(const std::filesystem::path& path) {
+    try {
+        return Json::parse(read_text(path));
+    } catch (const Json::parse_error&) {
+        throw Error(fmt::format("'{}' is not JSON; was it written by thalweg?", path.string()));
+    }
+}
+
+}  // namespace thalweg::study

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/tables.hpp"
+
+#include <map>
+
+namespace thalweg::study {
+namespace {
+
+using Doubles = std::vector<double>;
+using Wholes = std::vector<std::int64_t>;
+using Texts = std::vector<std::string>;
+
+/// -1 stands for "none", which a GeoPackage reader would take for four thousand million.
+std::int64_t or_minus_one(Index value) { return value == none ? -1 : static_cast<std::int64_t>(value); }
+
+template <class Row, class Get>
+auto column_of(const std::vector<Row>& rows, Get get) {
+    std::vector<decltype(get(rows.front()))> values;
+    values.reserve(rows.size());
+    for (const Row& row : rows) values.push_back(get(row));
+    return values;
+}
+
+/// Nodes where links begin or end, with what meets there.
+struct Meeting {
+    Index inflows = 0;
+    Index downstream_link = none;
+    Index strahler = 0, shreve = 0;
+};
+
+std::map<Index, Meeting> meetings(const channel::StreamNetwork& network) {
+    std::map<Index, Meeting> all;
+    for (Index link = 0; link < network.size(); ++link) {
+        const auto nodes = network.nodes_of(link);
+        Meeting& below = all[nodes.back()];
+        ++below.inflows;
+        if (network.downstream[link] == none) {
+            below.strahler = network.strahler[link];
+            below.shreve = network.shreve[link];
+        }
+        Meeting& above = all[nodes.front()];
+        above.downstream_link = link;
+        above.strahler = network.strahler[link];
+        above.shreve = network.shreve[link];
+    }
+    return all;
+}
+
+}  // namespace
+
+PositionOf positions(const Raster& raster) {
+    return [placement = raster.placement, cols = raster.grid.cols](Index node) {
+        return placement.center(node / cols, node % cols);
+    };
+}
+
+Table links_table(const channel::StreamNetwork& network, const PositionOf& position) {
+    Wholes id, downstream, strahler, shreve;
+    Doubles slope;
+    Table table{.name = "links", .columns = {}, .kind = GeometryKind::line, .geometry = {}};
+    for (Index link = 0; link < network.size(); ++link) {
+        id.push_back(link);
+        downstream.push_back(or_minus_one(network.downstream[link]));
+        strahler.push_back(network.strahler[link]);
+        shreve.push_back(network.shreve[link]);
+        slope.push_back(network.drop_m[link] / network.length_m[link]);
+        std::vector<Point>& line = table.geometry.emplace_back();
+        for (const Index node : network.nodes_of(link)) line.push_back(position(node));
+    }
+    table.columns = {{"id", id},           {"downstream", downstream},        {"strahler", strahler},
+                     {"shreve", shreve},   {"length_m", network.length_m},    {"drop_m", network.drop_m},
+                     {"slope", slope},     {"area_m2", network.area_m2}};
+    return table;
+}
+
+Table junctions_table(const channel::StreamNetwork& network, const PositionOf& position) {
+    Wholes inflows, downstream, strahler, shreve;
+    Texts kind;
+    Table table{.name = "junctions", .columns = {}, .kind = GeometryKind::point, .geometry = {}};
+    for (const auto& [node, meeting] : meetings(network)) {
+        const bool mouth = meeting.downstream_link == none;
+        kind.push_back(mouth ? "outlet" : meeting.inflows == 0 ? "source" : "junction");
+        inflows.push_back(meeting.inflows);
+        downstream.push_back(or_minus_one(meeting.downstream_link));
+        strahler.push_back(meeting.strahler);
+        shreve.push_back(meeting.shreve);
+        table.geometry.push_back({position(node)});
+    }
+    table.columns = {{"kind", kind}, {"inflows", inflows}, {"downstream", downstream}, {"strahler", strahler},
+                     {"shreve", shreve}};
+    return table;
+}
+
+Table basins_table(const Statistics& s, const PositionOf& position, std::vector<Polygon> outlines) {
+    Wholes id;
+    for (std::size_t b = 0; b < s.basins.size(); ++b) id.push_back(static_cast<std::int64_t>(b));
+    const auto& rows = s.basins;
+    return {.name = "basins",
+            .columns = {{"id", id},
+                        {"outlet_x", column_of(rows, [&](const auto& r) { return position(r.basin.outlet).x; })},
+                        {"outlet_y", column_of(rows, [&](const auto& r) { return position(r.basin.outlet).y; })},
+                        {"area_m2", column_of(rows, [](const auto& r) { return r.basin.area_m2; })},
+                        {"complete", column_of(rows, [](const auto& r) { return std::int64_t{r.basin.complete}; })},
+                        {"relief_m", column_of(rows, [](const auto& r) { return r.relief_m; })},
+                        {"hypsometric_integral", column_of(rows, [](const auto& r) { return r.hypsometric_integral; })},
+                        {"max_strahler", column_of(rows, [](const auto& r) { return std::int64_t{r.max_strahler}; })}},
+            .kind = GeometryKind::polygon,
+            .geometry = std::move(outlines)};
+}
+
+Table hypsometry_table(const terrain::Hypsometry& h) {
+    return {.name = "hypsometry",
+            .columns = {{"relative_height", h.relative_height}, {"relative_area", h.relative_area}},
+            .kind = GeometryKind::no_geometry,
+            .geometry = {}};
+}
+
+Table slope_area_table(const std::vector<channel::SlopeAreaBin>& bins) {
+    return {.name = "slope_area",
+            .columns = {{"area_m2", column_of(bins, [](const auto& bin) { return bin.area_m2; })},
+                        {"slope", column_of(bins, [](const auto& bin) { return bin.slope; })},
+                        {"slope_se", column_of(bins, [](const auto& bin) { return bin.slope_se; })},
+                        {"count", column_of(bins, [](const auto& bin) { return std::int64_t{bin.count}; })}},
+            .kind = GeometryKind::no_geometry,
+            .geometry = {}};
+}
+
+Table slope_area_points_table(const std::vector<channel::SlopeAreaPoint>& points) {
+    return {.name = "slope_area_points",
+            .columns = {{"area_m2", column_of(points, [](const auto& point) { return point.area_m2; })},
+                        {"slope", column_of(points, [](const auto& point) { return point.slope; })}},
+            .kind = GeometryKind::no_geometry,
+            .geometry = {}};
+}
+
+}  // namespace thalweg::study
