@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "evolve/check_setting.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "thalweg/core/error.hpp"
+
+namespace thalweg::evolve {
+namespace {
+
+void check_count(const char* what, std::size_t found, std::size_t needed) {
+    if (found == needed) return;
+    throw Error(fmt::format("a landscape of {} nodes needs as many values of {}, not {}", needed, what, found));
+}
+
+}  // namespace
+
+void check_setting(Index nodes, const Landscape& landscape, const Setting& setting) {
+    check_count("elevation", landscape.elevation_m.size(), nodes);
+    check_count("uplift", setting.uplift_m_per_yr.size(), nodes);
+    check_count("rainfall", setting.rainfall.size(), nodes);
+    check_count("boundary", setting.boundary.size(), nodes);
+}
+
+void check_river(const River& river) {
+    const auto finite_and_not_negative = [](double value) { return value >= 0 && std::isfinite(value); };
+    if (!finite_and_not_negative(river.k)) {
+        throw Error(fmt::format("the erodibility k must be zero or more, not {}", river.k));
+    }
+    if (!finite_and_not_negative(river.m)) {
+        throw Error(fmt::format("the area exponent m must be zero or more, not {}", river.m));
+    }
+    if (!(river.n >= 0.3 && river.n <= 5)) {
+        throw Error(fmt::format("the slope exponent n must lie between 0.3 and 5, not {}", river.n));
+    }
+    if (!(river.talus_slope > 0)) {
+        throw Error(fmt::format("the talus slope must be positive, not {}", river.talus_slope));
+    }
+}
+
+void check_step(double dt_yr) {
+    if (dt_yr > 0 && std::isfinite(dt_yr)) return;
+    throw Error(fmt::format("the time step must be a positive number of years, not {}", dt_yr));
+}
+
+void check_frozen(Index nodes, const FlowDirections& frozen) {
+    if (!frozen.empty()) check_count("frozen directions", frozen.size(), nodes);
+}
+
+}  // namespace thalweg::evolve

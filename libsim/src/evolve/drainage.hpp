@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+#include <span>
+
+#include "evolve/edges.hpp"
+#include "thalweg/evolve/river.hpp"
+#include "thalweg/terrain/graph.hpp"
+#include "thalweg/terrain/lakes.hpp"
+#include "thalweg/terrain/route.hpp"
+
+namespace thalweg::evolve {
+
+/// Gives the frozen nodes their direction wherever it still leads strictly down.
+template <class Edges>
+void keep_frozen(const Edges& edges, const std::vector<double>& elevation_m, const FlowDirections& frozen,
+                 FlowDirections& directions) {
+    for (Index node = 0; node < frozen.size(); ++node) {
+        if (frozen[node] == no_flow) continue;
+        if (elevation_m[edges.neighbor(node, frozen[node])] < elevation_m[node]) directions[node] = frozen[node];
+    }
+}
+
+/// Rainfall-weighted area of every node and all upstream of it, donors added in the order of the list. The buffer is
+/// reused. Nodes without data keep 0.
+template <class Edges>
+void accumulate_rain(const Edges& edges, const std::vector<double>& rainfall, const FlowDirections& directions,
+                     const std::vector<Index>& order, std::vector<double>& area_m2) {
+    area_m2.assign(directions.size(), 0.0);
+    for (std::size_t at = order.size(); at-- > 0;) {
+        const Index node = order[at];
+        const double area = area_m2[node] + edges.area(node) * rainfall[node];
+        area_m2[node] = area;
+        if (directions[node] != no_flow) area_m2[edges.neighbor(node, directions[node])] += area;
+    }
+}
+
+/// Drainage of a landscape into buffers that live as long as the simulation.
+template <Topology T>
+void drain_into(const T& topology, const Landscape& landscape, const Setting& setting, terrain::Receiver receiver,
+                const FlowDirections& frozen, Drainage& drainage) {
+    const auto& elevation_m = landscape.elevation_m;
+    drainage.directions = terrain::route(topology, elevation_m, setting.boundary, receiver);
+    if (!frozen.empty()) {
+        with_edges(topology, [&](const auto& edges) { keep_frozen(edges, elevation_m, frozen, drainage.directions); });
+    }
+    drainage.lakes = terrain::drain_lakes(topology, elevation_m, setting.boundary, drainage.directions);
+    drainage.order = terrain::downstream_first_order(topology, elevation_m, drainage.directions);
+    with_edges(topology, [&](const auto& edges) {
+        accumulate_rain(edges, setting.rainfall, drainage.directions, drainage.order, drainage.area_m2);
+    });
+}
+
+}  // namespace thalweg::evolve
