@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "io/raster_place.hpp"
+
+#include <fmt/format.h>
+#include <ogr_spatialref.h>
+
+#include <GeographicLib/Geodesic.hpp>
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "thalweg/core/error.hpp"
+#include "thalweg/io/geodesy.hpp"
+
+namespace thalweg::io {
+namespace {
+
+using Affine = std::array<double, 6>;
+
+Affine upright_transform(GDALDataset& dataset, const std::string& name) {
+    Affine t{};
+    const bool given = dataset.GetGeoTransform(t.data()) == CE_None;
+    const bool identity = t[0] == 0 && t[1] == 1 && t[2] == 0 && t[3] == 0 && t[4] == 0 && std::abs(t[5]) == 1;
+    if (!given && dataset.GetGCPCount() > 0) {
+        throw Error(fmt::format("{} is placed by ground control points only: warp it with gdalwarp first", name));
+    }
+    if (!given || identity) {
+        throw Error(
+            fmt::format("{} has no geotransform, so its cell size and place are unknown: "
+                        "set them with gdal_translate -a_ullr",
+                        name));
+    }
+    for (const double value : t) {
+        if (!std::isfinite(value)) throw Error(fmt::format("{} has a geotransform that is not finite", name));
+    }
+    // A hundredth of a cell over the whole raster is rounding, not rotation.
+    const double drift =
+        std::max(std::abs(t[2] * dataset.GetRasterYSize() / t[1]), std::abs(t[4] * dataset.GetRasterXSize() / t[5]));
+    if (!(drift < 0.01) || t[1] <= 0) {
+        throw Error(fmt::format("{} is rotated or mirrored: turn it north-up with gdalwarp first", name));
+    }
+    return t;
+}
+
+std::optional<OGRSpatialReference> crs_from_text(const std::string& text) {
+    OGRSpatialReference crs;
+    const char* const options[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
+    if (crs.SetFromUserInput(text.c_str(), options) != OGRERR_NONE) {
+        throw Error(fmt::format("\"{}\" is no coordinate system that can be understood (try EPSG:32611)", text));
+    }
+    return crs;
+}
+
+/// Corners that could be longitudes and latitudes, of cells that could be a DEM's; a corner at the origin is what
+/// synthetic rasters have.
+bool plausible_degrees(const Placement& p, double rows, double cols) {
+    const double east = p.west + cols * p.cell_width;
+    const double south = p.north - rows * p.cell_height;
+    const bool at_origin = p.west == 0 && (south == 0 || p.north == 0);
+    return p.west >= -180 && east <= 180 && south >= -90 && p.north <= 90 && p.cell_width < 1 && p.cell_height < 1 &&
+           !at_origin;
+}
+
+std::optional<OGRSpatialReference> stated_crs(const GDALDataset& dataset) {
+    const OGRSpatialReference* own = dataset.GetSpatialRef();
+    if (own == nullptr || own->IsEmpty()) return std::nullopt;
+    return *own;
+}
+
+std::string epsg_or_name(OGRSpatialReference crs) {
+    if (crs.GetAuthorityCode(nullptr) == nullptr) crs.AutoIdentifyEPSG();
+    const char* authority = crs.GetAuthorityName(nullptr);
+    const char* code = crs.GetAuthorityCode(nullptr);
+    if (authority != nullptr && code != nullptr) return fmt::format("{}:{}", authority, code);
+    const char* name = crs.GetName();
+    return name == nullptr ? "" : name;
+}
+
+std::string wkt_of(const OGRSpatialReference& crs) {
+    char* text = nullptr;
+    crs.exportToWkt(&text);
+    const std::string wkt = text == nullptr ? "" : text;
+    CPLFree(text);
+    return wkt;
+}
+
+/// Metres per unit of a band's unit name; 0 where the name is not known.
+double metres_per(std::string unit) {
+    std::transform(unit.begin(), unit.end(), unit.begin(), [](unsigned char c) { return std::tolower(c); });
+    constexpr double us_foot = 1200.0 / 3937.0;
+    static const std::array<std::pair<const char*, double>, 25> known{{
+        {"m", 1},
+        {"metre", 1},
+        {"meter", 1},
+        {"metres", 1},
+        {"meters", 1},
+        {"ft", 0.3048},
+        {"foot", 0.3048},
+        {"feet", 0.3048},
+        {"international foot", 0.3048},
+        {"us survey foot", us_foot},
+        {"us survey feet", us_foot},
+        {"us_survey_foot", us_foot},
+        {"foot_us", us_foot},
+        {"ftus", us_foot},
+        {"us-ft", us_foot},
+        {"sfoot", us_foot},
+        {"us foot", us_foot},
+        {"cm", 0.01},
+        {"centimetre", 0.01},
+        {"dm", 0.1},
+        {"decimetre", 0.1},
+        {"mm", 0.001},
+        {"millimetre", 0.001},
+        {"km", 1000},
+        {"kilometre", 1000},
+    }};
+    for (const auto& [name, metres] : known) {
+        if (unit == name) return metres;
+    }
+    return 0;
+}
+
+/// The unit that the band states, else the vertical part of a compound coordinate system, else metres.
+void find_vertical_unit(GDALDataset& dataset, const OGRSpatialReference* crs, const std::string& name,
+                        ReadResult& result) {
+    const std::string unit = dataset.GetRasterBand(1)->GetUnitType();
+    const double stated = metres_per(unit);
+    if (stated > 0) {
+        result.vertical_unit_m = stated;
+        return;
+    }
+    if (!unit.empty()) {
+        result.warnings.push_back(
+            fmt::format("{} states its heights in \"{}\", which is no known unit of length: "
+                        "they are taken as metres",
+                        name, unit));
+    }
+    if (crs == nullptr) return;
+    if (crs->IsCompound()) {
+        result.vertical_unit_m = crs->GetTargetLinearUnits("VERT_CS");
+    } else if (unit.empty() && crs->IsProjected() && std::abs(crs->GetLinearUnits() - 1) > 1e-9) {
+        const char* plane_unit = nullptr;
+        crs->GetLinearUnits(&plane_unit);
+        result.warnings.push_back(
+            fmt::format("{} lies on a plane measured in {} but does not state the unit of its "
+                        "heights: they are taken as metres (if they are feet, say so with "
+                        "gdal_edit.py -units ft)",
+                        name, plane_unit));
+    }
+}
+
+/// Ratio of lengths on the map to lengths on the ellipsoid around the raster's middle, west to east; 0 if unknown.
+double map_scale(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs) {
+    OGRSpatialReference plane(crs);
+    plane.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::unique_ptr<OGRSpatialReference> sphere(plane.CloneGeogCS());
+    if (!sphere) return 0;
+    sphere->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::unique_ptr<OGRCoordinateTransformation> change(OGRCreateCoordinateTransformation(&plane, sphere.get()));
+    const Point middle = p.center(rows / 2, cols / 2);
+    std::array<double, 2> x{middle.x - p.cell_width / 2, middle.x + p.cell_width / 2};
+    std::array<double, 2> y{middle.y, middle.y};
+    if (!change || !change->Transform(2, x.data(), y.data())) return 0;
+    double f = crs.GetInvFlattening();
+    f = f == 0 ? 0 : 1 / f;
+    double ground = 0;
+    GeographicLib::Geodesic(crs.GetSemiMajor(), f).Inverse(y[0], x[0], y[1], x[1], ground);
+    return ground > 0 ? p.cell_width * crs.GetLinearUnits() / ground : 0;
+}
+
+void warn_of_stretched_map(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs,
+                           const std::string& name, ReadResult& result) {
+    const double scale = map_scale(p, rows, cols, crs);
+    if (scale == 0 || std::abs(scale - 1) < 0.01) return;
+    result.warnings.push_back(fmt::format(
+        "lengths on the map of {} are {:.1f} % {} than on the ground: lengths, areas and slopes are the map's "
+        "(reproject with gdalwarp -t_srs to a coordinate system made for the place)",
+        name, 100 * std::abs(scale - 1), scale > 1 ? "longer" : "shorter"));
+}
+
+Grid degrees_grid(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs, const std::string& name) {
+    if (std::abs(crs.GetAngularUnits() * 180 / std::numbers::pi - 1) > 1e-9) {
+        throw Error(
+            fmt::format("{} has longitudes in another unit than degrees: reproject it with gdalwarp -t_srs "
+                        "EPSG:4326",
+                        name));
+    }
+    const double inverse = crs.GetInvFlattening();
+    try {
+        return geographic_grid(rows, cols, p.north, p.cell_width, p.cell_height, crs.GetSemiMajor(),
+                               inverse == 0 ? 0 : 1 / inverse);
+    } catch (const Error& error) {
+        throw Error(fmt::format("{}: {}", name, error.what()));
+    }
+}
+
+void measure_plane(Raster& raster, Index rows, Index cols, double unit_m) {
+    raster.grid = plane_grid(rows, cols, raster.placement.cell_width * unit_m, raster.placement.cell_height * unit_m);
+}
+
+void place_without_crs(Index rows, Index cols, const std::string& name, ReadResult& result) {
+    Placement& p = result.raster.placement;
+    if (!plausible_degrees(p, rows, cols)) {
+        result.warnings.push_back(
+            fmt::format("{} states no coordinate system: its coordinates are taken as metres (or give --crs)", name));
+        measure_plane(result.raster, rows, cols, 1);
+        return;
+    }
+    result.warnings.push_back(
+        fmt::format("{} states no coordinate system, but its coordinates look like degrees: "
+                    "taken as WGS 84 longitude and latitude (or give --crs)",
+                    name));
+    OGRSpatialReference wgs84;
+    wgs84.SetWellKnownGeogCS("WGS84");
+    p.geographic = true;
+    p.crs_wkt = wkt_of(wgs84);
+    result.crs_name = "EPSG:4326";
+    result.raster.grid = degrees_grid(p, rows, cols, wgs84, name);
+}
+
+void place_with_crs(OGRSpatialReference crs, Index rows, Index cols, const std::string& name, ReadResult& result) {
+    Placement& p = result.raster.placement;
+    if (crs.IsCompound()) crs.StripVertical();
+    if (!crs.IsGeographic() && !crs.IsProjected()) {
+        throw Error(
+            fmt::format("the coordinate system of {} ({}) is neither geographic nor projected: give the right "
+                        "one with --crs",
+                        name, crs.GetName() == nullptr ? "unnamed" : crs.GetName()));
+    }
+    p.geographic = crs.IsGeographic();
+    p.crs_wkt = wkt_of(crs);
+    result.crs_name = epsg_or_name(crs);
+    if (p.geographic) {
+        result.raster.grid = degrees_grid(p, rows, cols, crs, name);
+        return;
+    }
+    measure_plane(result.raster, rows, cols, crs.GetLinearUnits());
+    warn_of_stretched_map(p, rows, cols, crs, name, result);
+}
+
+}  // namespace
+
+RowOrder place_raster(GDALDataset& dataset, const std::string& name, const std::string& crs_override,
+                      ReadResult& result) {
+    const Affine t = upright_transform(dataset, name);
+    const auto rows = static_cast<Index>(dataset.GetRasterYSize());
+    const auto cols = static_cast<Index>(dataset.GetRasterXSize());
+    const RowOrder order = t[5] > 0 ? RowOrder::south_to_north : RowOrder::north_to_south;
+    Placement& p = result.raster.placement;
+    p.west = t[0];
+    p.north = order == RowOrder::south_to_north ? t[3] + rows * t[5] : t[3];
+    p.cell_width = t[1];
+    p.cell_height = std::abs(t[5]);
+    const std::optional<OGRSpatialReference> own = stated_crs(dataset);
+    const std::optional<OGRSpatialReference> crs = crs_override.empty() ? own : crs_from_text(crs_override);
+    // A horizontal system given by the user leaves the file's own word on heights standing.
+    const std::optional<OGRSpatialReference>& vertical = own && own->IsCompound() ? own : crs;
+    find_vertical_unit(dataset, vertical ? &*vertical : nullptr, name, result);
+    if (crs) {
+        place_with_crs(*crs, rows, cols, name, result);
+    } else {
+        place_without_crs(rows, cols, name, result);
+    }
+    return order;
+}
+
+}  // namespace thalweg::io

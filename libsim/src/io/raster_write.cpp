@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <fmt/format.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "io/gdal_guard.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/io/raster_file.hpp"
+
+namespace thalweg::io {
+namespace {
+
+constexpr int tile = 256;
+
+[[noreturn]] void unwritten(const std::filesystem::path& path, const GdalGuard& gdal) {
+    throw Error(fmt::format("{} could not be written whole{}", path.string(), because(gdal)));
+}
+
+GDALDataType gdal_type(CellType type) {
+    if (type == CellType::float64) return GDT_Float64;
+    return type == CellType::uint8 ? GDT_Byte : GDT_Int32;
+}
+
+CPLStringList creation_options(GDALDriver& driver, CellType type) {
+    const char* offered = driver.GetMetadataItem(GDAL_DMD_CREATIONOPTIONLIST);
+    const bool zstd = offered != nullptr && std::string(offered).find("<Value>ZSTD</Value>") != std::string::npos;
+    CPLStringList options;
+    options.SetNameValue("TILED", "YES");
+    options.SetNameValue("BLOCKXSIZE", fmt::format("{}", tile).c_str());
+    options.SetNameValue("BLOCKYSIZE", fmt::format("{}", tile).c_str());
+    options.SetNameValue("COMPRESS", zstd ? "ZSTD" : "DEFLATE");
+    options.SetNameValue("PREDICTOR", type == CellType::float64 ? "3" : "2");
+    options.SetNameValue("BIGTIFF", "IF_SAFER");
+    return options;
+}
+
+double nodata_tag(const Layer& layer) { return layer.nodata.value_or(std::numeric_limits<double>::quiet_NaN()); }
+
+/// Whole numbers of the type's range, with no data replaced; GDAL would clamp and round in silence.
+std::vector<double> checked_values(std::span<const double> values, const Layer& layer,
+                                   const std::filesystem::path& path) {
+    std::vector<double> cells(values.begin(), values.end());
+    for (double& value : cells) {
+        if (std::isnan(value)) value = nodata_tag(layer);
+    }
+    if (layer.type == CellType::float64) return cells;
+    const bool bytes = layer.type == CellType::uint8;
+    const double lowest = bytes ? 0 : std::numeric_limits<std::int32_t>::min();
+    const double highest = bytes ? 255 : std::numeric_limits<std::int32_t>::max();
+    for (const double value : cells) {
+        if (value >= lowest && value <= highest && value == std::floor(value)) continue;
+        throw Error(fmt::format("{} cannot hold {}: its cells are whole numbers from {} to {}", path.string(), value,
+                                lowest, highest));
+    }
+    return cells;
+}
+
+void place(GDALDataset& dataset, const Placement& placement) {
+    std::array<double, 6> transform{placement.west,        placement.cell_width, 0, placement.north, 0,
+                                    -placement.cell_height};
+    dataset.SetGeoTransform(transform.data());
+    dataset.SetMetadataItem(GDALMD_AREA_OR_POINT, GDALMD_AOP_AREA);
+    if (placement.crs_wkt.empty()) return;
+    OGRSpatialReference crs;
+    if (crs.importFromWkt(placement.crs_wkt.c_str()) != OGRERR_NONE) {
+        throw Error("the coordinate system to be written cannot be understood");
+    }
+    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    dataset.SetSpatialRef(&crs);
+}
+
+void describe(GDALRasterBand& band, const Layer& layer) {
+    if (layer.type == CellType::float64 || layer.nodata) band.SetNoDataValue(nodata_tag(layer));
+    if (!layer.description.empty()) band.SetDescription(layer.description.c_str());
+}
+
+/// GDAL's close cannot fail, so a full disk can leave a file that looks complete: every tile must lie inside it.
+bool tiles_lie_inside(const std::filesystem::path& path, const Grid& grid) {
+    const DatasetPtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER));
+    if (!dataset) return false;
+    const std::uintmax_t size = std::filesystem::file_size(path);
+    GDALRasterBand& band = *dataset->GetRasterBand(1);
+    for (Index y = 0; y * tile < grid.rows; ++y) {
+        for (Index x = 0; x * tile < grid.cols; ++x) {
+            const char* offset = band.GetMetadataItem(fmt::format("BLOCK_OFFSET_{}_{}", x, y).c_str(), "TIFF");
+            const char* bytes = band.GetMetadataItem(fmt::format("BLOCK_SIZE_{}_{}", x, y).c_str(), "TIFF");
+            if (offset == nullptr || bytes == nullptr) return false;
+            if (std::stoull(offset) + std::stoull(bytes) > size) return false;
+        }
+    }
+    return true;
+}
+
+void write_file(const std::filesystem::path& path, const Grid& grid, const Placement& placement,
+                std::vector<double> cells, const Layer& layer, GdalGuard& gdal) {
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
+    DatasetPtr dataset(driver->Create(path.c_str(), static_cast<int>(grid.cols), static_cast<int>(grid.rows), 1,
+                                      gdal_type(layer.type), creation_options(*driver, layer.type).List()));
+    if (!dataset) throw Error(fmt::format("{} cannot be created{}", path.string(), because(gdal)));
+    place(*dataset, placement);
+    GDALRasterBand& band = *dataset->GetRasterBand(1);
+    describe(band, layer);
+    const CPLErr status =
+        band.RasterIO(GF_Write, 0, 0, static_cast<int>(grid.cols), static_cast<int>(grid.rows), cells.data(),
+                      static_cast<int>(grid.cols), static_cast<int>(grid.rows), GDT_Float64, 0, 0, nullptr);
+    dataset->FlushCache(false);
+    dataset.reset();
+    if (status != CE_None || gdal.failed() || !tiles_lie_inside(path, grid)) unwritten(path, gdal);
+}
+
+}  // namespace
+
+void write_raster(const std::filesystem::path& path, const Grid& grid, const Placement& placement,
+                  std::span<const double> values, const Layer& layer) {
+    if (values.size() != grid.size()) {
+        throw Error(fmt::format("{} would need {} values, not {}", path.string(), grid.size(), values.size()));
+    }
+    std::vector<double> cells = checked_values(values, layer, path);
+    GdalGuard gdal;
+    try {
+        write_file(path, grid, placement, std::move(cells), layer, gdal);
+    } catch (const Error&) {
+        std::error_code ignored;
+        if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);
+        throw;
+    }
+}
+
+}  // namespace thalweg::io
