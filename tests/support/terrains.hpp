@@ -128,9 +128,17 @@ inline std::vector<TestTerrain> assorted_terrains(std::uint64_t seed) {
 }
 
 inline std::vector<TestTerrain> shaped_terrains() {
-    return {flat_terrain(1, 1),  flat_terrain(7, 9),     bowl(11, 12),          cone(11, 12),
-            bowl(1, 9),          two_catchments(8, 11),  bowl_of_bowls(25, 27), comb(12, 15),
-            flat_terrain(2, 2),  with_holes(flat_terrain(6, 6), 1.0, 1),        with_holes(cone(15, 15), 0.1, 5)};
+    return {flat_terrain(1, 1),
+            flat_terrain(7, 9),
+            bowl(11, 12),
+            cone(11, 12),
+            bowl(1, 9),
+            two_catchments(8, 11),
+            bowl_of_bowls(25, 27),
+            comb(12, 15),
+            flat_terrain(2, 2),
+            with_holes(flat_terrain(6, 6), 1.0, 1),
+            with_holes(cone(15, 15), 0.1, 5)};
 }
 
 /// The same graph as a mesh: neighbours ascending (so slots differ from the grid's), same lengths and areas.

@@ -3,16 +3,21 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 #include <numeric>
 #include <tuple>
 
 namespace thalweg::terrain {
 namespace {
 
-/// Union-find by size with path halving.
+/// Union-find by size with path halving. Each piece knows its lowest pit.
 class Joined {
   public:
-    explicit Joined(Index count) : parent_(count), size_(count, 1) { std::iota(parent_.begin(), parent_.end(), 0u); }
+    Joined(std::span<const Index> pit, std::span<const double> elevation_m)
+        : parent_(pit.size()), size_(pit.size(), 1), lowest_m_(pit.size(), -std::numeric_limits<double>::infinity()) {
+        std::iota(parent_.begin(), parent_.end(), 0u);
+        for (Index basin = 1; basin < pit.size(); ++basin) lowest_m_[basin] = elevation_m[pit[basin]];
+    }
 
     Index find(Index basin) {
         while (parent_[basin] != basin) {
@@ -22,26 +27,41 @@ class Joined {
         return basin;
     }
 
-    /// False if they were joined already.
-    bool join(Index a, Index b) {
-        a = find(a);
-        b = find(b);
-        if (a == b) return false;
+    double lowest_m(Index piece) const { return lowest_m_[piece]; }
+
+    /// Joins two different pieces, each named by what `find` gives.
+    void join(Index a, Index b) {
         if (size_[a] < size_[b]) std::swap(a, b);
         parent_[b] = a;
         size_[a] += size_[b];
-        return true;
+        lowest_m_[a] = std::min(lowest_m_[a], lowest_m_[b]);
     }
 
   private:
     std::vector<Index> parent_;
     std::vector<Index> size_;
+    std::vector<double> lowest_m_;
 };
 
-std::vector<Pass> join_lowest_first(std::vector<Pass> passes, Joined& joined) {
+/// Kruskal's tree, and the number of lakes: where two pieces meet, the one with the higher pit ends as a lake of its
+/// own, unless they meet at the very height of that pit and it was only a part of a flat.
+struct Kruskal {
+    std::vector<Pass> tree;
+    Index lakes;
+};
+
+Kruskal join_lowest_first(std::vector<Pass> passes, Joined& joined) {
     std::sort(passes.begin(), passes.end(), lower);
-    std::erase_if(passes, [&](const Pass& pass) { return !joined.join(pass.basin, pass.other_basin); });
-    return passes;
+    Index lakes = 0;
+    std::erase_if(passes, [&](const Pass& pass) {
+        const Index a = joined.find(pass.basin);
+        const Index b = joined.find(pass.other_basin);
+        if (a == b) return true;
+        if (pass.height_m > std::max(joined.lowest_m(a), joined.lowest_m(b))) ++lakes;
+        joined.join(a, b);
+        return false;
+    });
+    return {std::move(passes), lakes};
 }
 
 /// A pass straight out at the lowest pit of every piece that has no outlet.
@@ -87,7 +107,7 @@ Pass reversed(const Pass& pass) { return {pass.height_m, pass.other_basin, pass.
 
 SpillTree walk_from_outside(const std::vector<Pass>& tree, std::size_t basins) {
     const Incidence at = passes_by_basin(tree, basins);
-    SpillTree spill{std::vector<Pass>(basins), {outside}};
+    SpillTree spill{std::vector<Pass>(basins), {outside}, 0};
     spill.order.reserve(basins);
     std::vector<std::uint8_t> reached(basins, 0);
     reached[outside] = 1;
@@ -149,10 +169,12 @@ void LowestPasses::grow() {
 }
 
 SpillTree spill_tree(std::vector<Pass> passes, std::span<const Index> pit, std::span<const double> elevation_m) {
-    Joined joined(static_cast<Index>(pit.size()));
-    std::vector<Pass> tree = join_lowest_first(std::move(passes), joined);
-    open_closed_pieces(joined, pit, elevation_m, tree);
-    return walk_from_outside(tree, pit.size());
+    Joined joined(pit, elevation_m);
+    Kruskal kruskal = join_lowest_first(std::move(passes), joined);
+    open_closed_pieces(joined, pit, elevation_m, kruskal.tree);
+    SpillTree spill = walk_from_outside(kruskal.tree, pit.size());
+    spill.lakes = kruskal.lakes;
+    return spill;
 }
 
 }  // namespace thalweg::terrain

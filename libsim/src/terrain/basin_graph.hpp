@@ -40,6 +40,7 @@ class LowestPasses {
 struct SpillTree {
     std::vector<Pass> way_out;  ///< per basin; that of the outside is not used
     std::vector<Index> order;   ///< basins, each after the one it spills into; begins with the outside
+    Index lakes;                ///< basins that hold water; a flat pit counts once, however many basins it makes
 };
 
 /// Kruskal's algorithm from the outside. `pit` is the lowest node of each basin. Pieces that no pass joins to the

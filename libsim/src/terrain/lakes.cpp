@@ -107,7 +107,9 @@ struct Lakes {
 
 template <Topology T>
 Lakes find_lakes(const Terrain<T>& terrain, FlowDirections& directions) {
-    Lakes lakes{.pits = pits_after_joining_flats(terrain, directions), .basin = {}, .spill = {}};
+    Lakes lakes{.pits = pits_after_joining_flats(terrain, directions),
+                .basin = {},
+                .spill = {.way_out = {}, .order = {}, .lakes = 0}};
     if (lakes.pits.size() == 1) return lakes;
     lakes.basin = label_basins(terrain, directions, lakes.pits);
     lakes.spill = spill_tree(lowest_passes(terrain, lakes.basin, static_cast<Index>(lakes.pits.size())), lakes.pits,
@@ -168,14 +170,11 @@ Index drained(const Terrain<T>& terrain, FlowDirections& directions) {
     check_sizes(terrain.topology.size(), terrain.elevation_m.size(), terrain.boundary.size());
     check_sizes(terrain.topology.size(), directions.size(), directions.size());
     const Lakes lakes = find_lakes(terrain, directions);
-    Index count = 0;
     for (Index basin = 1; basin < lakes.pits.size(); ++basin) {
         const Pass& out = lakes.spill.way_out[basin];
         reverse_path(terrain.topology, out.node, slot_towards(terrain.topology, out.node, out.other_node), directions);
-        // A flat may be several basins that meet at its own height: only the way up out of it makes it a lake.
-        if (out.height_m > terrain.elevation_m[lakes.pits[basin]]) ++count;
     }
-    return count;
+    return lakes.spill.lakes;
 }
 
 }  // namespace
