@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 
+#include "mesh/constrained.hpp"
 #include "mesh/disk_grid.hpp"
 #include "mesh/outline.hpp"
 #include "thalweg/core/error.hpp"
@@ -57,16 +58,29 @@ double distance(const Point& a, const Point& b) { return std::hypot(b.x - a.x, b
 /// Into how many pieces a side is cut, none of them longer than the spacing (but for rounding).
 double pieces_of_side(double length, double spacing) { return std::max(1.0, std::ceil(length / spacing - 1e-9)); }
 
-/// Corners, and as few evenly spaced points along each side as leave no gap wider than the spacing. Then a point one
-/// spacing away from all of these is 0.86 spacings away from the outline, and in no edge's diametral disc.
-std::vector<Point> divide_outline(const Polygon& outline, double spacing) {
+/// Corners, and as few evenly spaced points along each side as leave no gap wider than the spacing; then `extra` more,
+/// each where the gaps are widest.
+std::vector<Point> divide_outline(const Polygon& outline, double spacing, int extra) {
+    const std::size_t sides = outline.size();
+    std::vector<double> length(sides);
+    std::vector<double> pieces(sides);
+    for (std::size_t i = 0; i < sides; ++i) {
+        length[i] = distance(outline[i], outline[(i + 1) % sides]);
+        pieces[i] = pieces_of_side(length[i], spacing);
+    }
+    for (; extra > 0; --extra) {
+        std::size_t widest = 0;
+        for (std::size_t i = 1; i < sides; ++i) {
+            if (length[i] / pieces[i] > length[widest] / pieces[widest]) widest = i;
+        }
+        ++pieces[widest];
+    }
     std::vector<Point> points;
-    for (std::size_t i = 0; i < outline.size(); ++i) {
+    for (std::size_t i = 0; i < sides; ++i) {
         const Point& a = outline[i];
-        const Point& b = outline[(i + 1) % outline.size()];
-        const double pieces = pieces_of_side(distance(a, b), spacing);
-        for (double k = 0; k < pieces; ++k) {
-            points.push_back({a.x + (b.x - a.x) * (k / pieces), a.y + (b.y - a.y) * (k / pieces)});
+        const Point& b = outline[(i + 1) % sides];
+        for (double k = 0; k < pieces[i]; ++k) {
+            points.push_back({a.x + (b.x - a.x) * (k / pieces[i]), a.y + (b.y - a.y) * (k / pieces[i])});
         }
     }
     return points;
@@ -138,8 +152,10 @@ void fill_gaps(DiskGrid& grid, double spacing, Draws& draws) {
     }
 }
 
-PointSet fill_outline(const Polygon& outline, double spacing, std::uint64_t seed) {
-    const std::vector<Point> outline_points = divide_outline(outline, spacing);
+/// A point one spacing away from all the outline's points is 0.86 spacings away from the outline itself and in no
+/// edge's diametral disc, so what is put inside needs no more points on the outline.
+PointSet fill_outline(const Polygon& outline, double spacing, int extra, std::uint64_t seed) {
+    const std::vector<Point> outline_points = conforming_ring(divide_outline(outline, spacing, extra));
     DiskGrid grid(outline, spacing, outline_points);
     Draws draws(seed);
     grow_front(grid, spacing, draws);
@@ -189,7 +205,7 @@ PointSet poisson_disk(const Polygon& outline, double spacing_m, std::uint64_t se
     if (!(spacing_m > 0) || std::isinf(spacing_m)) {
         throw Error(fmt::format("points need a positive spacing, not {} m", spacing_m));
     }
-    return fill_outline(checked_outline(outline), spacing_m, seed);
+    return fill_outline(checked_outline(outline), spacing_m, 0, seed);
 }
 
 PointSet poisson_disk_count(const Polygon& outline, Index count, std::uint64_t seed) {
@@ -197,16 +213,26 @@ PointSet poisson_disk_count(const Polygon& outline, Index count, std::uint64_t s
     check_count(checked, count);
     double spacing = expected_spacing(checked, polygon_area(checked), count);
     Random jitter(seed, 0x636f756e);
-    // A large set is met by the first or second spacing. A small one may need a certain number exactly, which the
-    // points of some spacing nearby will have: the corrections are damped and jittered until one is hit.
-    for (int attempt = 0; attempt < 400; ++attempt) {
-        PointSet set = fill_outline(checked, spacing, seed);
+    int extra = 0;
+    PointSet near_miss;
+    // A large set is met by the first or second spacing. A small one may need a certain number exactly: then what is
+    // missing is put on the outline, at a spacing jittered until the two together make it.
+    for (int attempt = 0; attempt < 200; ++attempt) {
+        PointSet set = fill_outline(checked, spacing, extra, seed);
+        const double missing = static_cast<double>(count) - static_cast<double>(set.points.size());
+        if (std::abs(missing) <= 0.02 * count) return set;
         const double ratio = static_cast<double>(set.points.size()) / count;
-        if (std::abs(ratio - 1) <= 0.02) return set;
-        spacing *= std::pow(ratio, 0.2 + 0.4 * jitter.uniform());
+        if (std::abs(missing) <= 1) near_miss = std::move(set);
+        if (attempt > 4 && missing > 0 && missing <= 4 && extra == 0) {
+            extra = static_cast<int>(missing);
+        } else {
+            spacing *= std::pow(ratio, attempt < 4 ? 0.5 : 0.2 + 0.6 * jitter.uniform());
+            extra = 0;
+        }
     }
-    throw Error(
-        fmt::format("no spacing gives {} points in this outline of {} corners: ask for more", count, checked.size()));
+    if (!near_miss.points.empty()) return near_miss;
+    throw Error(fmt::format("no spacing gives {} points in this outline of {} corners: ask for more, or for a spacing",
+                            count, checked.size()));
 }
 
 }  // namespace thalweg::mesh

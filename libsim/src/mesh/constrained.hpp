@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CGAL/Constrained_Delaunay_triangulation_2.h>
+#include <CGAL/Delaunay_triangulation_2.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_face_base_with_info_2.h>
+#include <CGAL/Triangulation_vertex_base_with_info_2.h>
+
+#include <span>
+#include <vector>
+
+#include "thalweg/core/index.hpp"
+#include "thalweg/core/point.hpp"
+
+namespace thalweg::mesh {
+
+struct Number {
+    Index value = none;  ///< place in the list of points that the vertices came from
+};
+struct Side {
+    bool outside = false;
+};
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Vertices = CGAL::Triangulation_vertex_base_with_info_2<Number, Kernel>;
+using Faces =
+    CGAL::Triangulation_face_base_with_info_2<Side, Kernel, CGAL::Constrained_triangulation_face_base_2<Kernel>>;
+using Structure = CGAL::Triangulation_data_structure_2<Vertices, Faces>;
+using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, Structure>;
+using Constrained =
+    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure,
+                                               CGAL::No_constraint_intersection_requiring_constructions_tag>;
+
+/// Triangulates the points, inserted in the given order, with the ring through the first `outline_count` of them as
+/// constraint, and adds points on the ring until no vertex lies in the diametral disc of one of its edges (Gabriel).
+/// Numbers the vertices as `points` does and appends those added.
+/// Throws Error if two points coincide or the ring crosses itself.
+void triangulate_conforming(std::vector<Point>& points, Index outline_count, std::span<const Index> order,
+                            Constrained& constrained);
+
+/// The ring with the points that make its edges Gabriel by themselves. Throws as above.
+std::vector<Point> conforming_ring(std::vector<Point> ring);
+
+}  // namespace thalweg::mesh
