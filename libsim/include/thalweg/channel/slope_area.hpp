@@ -54,9 +54,10 @@ std::vector<SlopeAreaPoint> node_slopes(const terrain::FlowGraph&, std::span<con
 /// Ten bins per decade of area, averaged in the logarithm.
 std::vector<SlopeAreaBin> slope_area_bins(std::span<const SlopeAreaPoint>, int bins_per_decade = 10);
 
-/// Standard error of each bin's ln slope for weighing: `slope_se`/`slope`, for a bin of a single point the scatter
-/// pooled over the other bins, nowhere less than `smallest_se_dex` (in powers of ten: a bin is no better than the power
-/// law itself). Bins without any scatter to pool get the floor.
+/// Standard error of each bin's mean ln slope, for weighing. A handful of points tells its own scatter badly, and a bin
+/// whose points agree by chance would outweigh all others (the 95 % interval of a fit then covers 80 %); so the
+/// variance of a point is the mean of the bin's own, which counts as its points − 1, and the one pooled over all bins,
+/// which counts 4. Nowhere less than `smallest_se_dex` (in powers of ten: no bin is better than the power law itself).
 std::vector<double> bin_errors(std::span<const SlopeAreaBin>, double smallest_se_dex);
 
 /// Weighted regression of ln slope on ln area over the bins; `smallest_se` (dex) is a floor for a bin's error.

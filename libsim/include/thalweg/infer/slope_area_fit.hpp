@@ -14,12 +14,12 @@ namespace thalweg::infer {
 
 /// What is known besides the slope–area curve.
 struct SlopeAreaFitOptions {
-    double n = 1;                                    ///< slope exponent, given; > 0
-    std::optional<double> uplift_m_per_yr;           ///< > 0; without it only θ, ks and k/u can be told
-    double uplift_sd_m_per_yr = 0;                   ///< ≥ 0, carried into k's error
-    std::optional<double> theta_fixed;               ///< concavity held at this value
-    std::optional<double> area_min_m2, area_max_m2;  ///< bins whose mean area lies outside are left out
-    double smallest_se_dex = 0.01;                   ///< floor of a bin's standard error; > 0
+    double n = 1;                                        ///< slope exponent, given; > 0
+    std::optional<double> uplift_m_per_yr{};             ///< > 0; without it only θ, ks and k/u can be told
+    double uplift_sd_m_per_yr = 0;                       ///< ≥ 0, carried into k's error
+    std::optional<double> theta_fixed{};                 ///< concavity held at this value
+    std::optional<double> area_min_m2{}, area_max_m2{};  ///< bins whose mean area lies outside are left out
+    double smallest_se_dex = 0.01;                       ///< floor of a bin's standard error; > 0
 };
 
 /// k and m with their uncertainties (k in m^(1−2m)/yr).
