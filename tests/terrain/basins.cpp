@@ -1,0 +1,221 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/terrain/basins.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "support/drawing.hpp"
+#include "support/terrain_oracles.hpp"
+#include "support/terrains.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/terrain/accumulate.hpp"
+#include "thalweg/terrain/lakes.hpp"
+#include "thalweg/terrain/route.hpp"
+
+using namespace thalweg;
+using namespace thalweg::terrain;
+using namespace thalweg::support;
+
+namespace {
+
+/// A terrain made into all that basins are found from.
+struct Measured {
+    Grid grid;
+    std::vector<Boundary> boundary;
+    FlowDirections directions;
+    FlowGraph graph;
+    std::vector<double> area_m2;
+    std::vector<std::uint8_t> complete;
+};
+
+Measured measure(const Grid& grid, std::span<const double> z) {
+    Measured m{
+        .grid = grid, .boundary = data_edge(grid, z), .directions = {}, .graph = {}, .area_m2 = {}, .complete = {}};
+    m.directions = route(grid, z, m.boundary);
+    drain_lakes(grid, z, m.boundary, m.directions);
+    m.graph = flow_graph(grid, z, m.directions);
+    m.area_m2 = accumulate(m.graph, cell_areas(grid));
+    m.complete = complete_catchments(grid, m.graph, m.boundary);
+    return m;
+}
+
+/// Directions as drawn, the rim open.
+Measured measure_drawn(Index rows, Index cols, const std::string& directions) {
+    const std::vector<double> z(rows * cols, 0.0);
+    Measured m{.grid = plane_grid(rows, cols, 1, 1),
+               .boundary = {},
+               .directions = draw_directions(directions),
+               .graph = {},
+               .area_m2 = {},
+               .complete = {}};
+    m.boundary = data_edge(m.grid, z);
+    m.graph = flow_graph(m.grid, z, m.directions);
+    m.area_m2 = accumulate(m.graph, cell_areas(m.grid));
+    m.complete = complete_catchments(m.grid, m.graph, m.boundary);
+    return m;
+}
+
+std::string show(const std::vector<std::uint8_t>& flags, Index cols) {
+    std::string text;
+    for (std::size_t i = 0; i < flags.size(); ++i) {
+        text += flags[i] ? '1' : '.';
+        if ((i + 1) % cols == 0) text += '\n';
+    }
+    return text;
+}
+
+}  // namespace
+
+TEST_CASE("every node knows the outlet of its tree") {
+    const Measured m = measure_drawn(2, 4, R"(
+        v 3 > v
+        . < . .)");
+    CHECK(outlet_of(m.graph) == std::vector<Index>{4, 4, 7, 7, 4, 4, 6, 7});
+}
+
+TEST_CASE("the outlet of a node is where its water ends") {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        for (const TestTerrain& terrain : assorted_terrains(seed)) {
+            const Measured m = measure(terrain.grid, terrain.elevation_m);
+            const std::vector<Index> outlet = outlet_of(m.graph);
+            for (Index node = 0; node < terrain.grid.size(); ++node) {
+                const bool data = !std::isnan(terrain.elevation_m[node]);
+                REQUIRE(outlet[node] == (data ? end_of_flow(terrain.grid, m.directions, node) : none));
+            }
+        }
+    }
+}
+
+TEST_CASE("in a drawn map a catchment is complete down to where water from the edge comes in") {
+    // Two rivers leave at the same southern outlet (row 6, column 3). The western one starts inside; the eastern one
+    // begins on the eastern rim, five columns from the outlet. Rim cells flow straight out.
+    const Measured m = measure_drawn(7, 9, R"(
+        . . . . . . . . .
+        . v . . . . . . .
+        . v . . . . . . .
+        . > v . . . . . .
+        . . > v < < < < <
+        . . . v . . . . .
+        . . . . . . . . .)");
+    CHECK(show(m.complete, 9) ==
+          "111111111\n"
+          "111111111\n"
+          "111111111\n"
+          "111111111\n"
+          "111......\n"
+          "111.11111\n"
+          "111.11111\n");
+}
+
+TEST_CASE("edge cells within two of the outlet they drain to do not cut a catchment") {
+    const auto cut = [](const std::string& row) {
+        const Measured m = measure_drawn(5, 9,
+                                         ". . . . . . . . .  . . . . . . . . .  . . . . . . . . .  "
+                                         ". . . . . . . . .  " +
+                                             row);
+        return m.complete[4 * 9 + 4] == 0;
+    };
+    CHECK_FALSE(cut(". . . > . . . . ."));
+    CHECK_FALSE(cut(". . > > . . . . ."));
+    CHECK_FALSE(cut(". . . . . < < . ."));
+    CHECK(cut(". > > > . . . . ."));
+}
+
+TEST_CASE("a mask that leaves by one outlet is complete") {
+    // A cone's inside out: all of a bowl with a notch drains by the notch. One cell in a hundred may leave elsewhere.
+    const auto complete_cells = [](Index strays) {
+        std::string row;
+        for (Index c = 0; c < 100; ++c) row += c + 1 == 100 ? ". " : (c < strays ? ". " : "> ");
+        const Measured m = measure_drawn(1, 100, row);
+        return std::count(m.complete.begin(), m.complete.end(), 1);
+    };
+    CHECK(complete_cells(0) == 100);
+    CHECK(complete_cells(1) == 100);
+    CHECK(complete_cells(2) < 10);
+}
+
+TEST_CASE("no node downstream of a cut one is complete, and none without reason cut") {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const TestTerrain terrain = with_holes(noise_terrain(18, 21, seed), 0.01, seed);
+        const Measured m = measure(terrain.grid, terrain.elevation_m);
+        std::vector<std::uint8_t> cut(terrain.grid.size(), 0);
+        for (Index start = 0; start < terrain.grid.size(); ++start) {
+            if (m.boundary[start] == Boundary::interior) continue;
+            const Index end = end_of_flow(m.grid, m.directions, start);
+            const auto apart = [](Index a, Index b) { return std::abs(int(a) - int(b)); };
+            if (apart(m.grid.row(start), m.grid.row(end)) <= 2 && apart(m.grid.col(start), m.grid.col(end)) <= 2) {
+                continue;
+            }
+            for (Index node = start;; node = m.grid.neighbor(node, m.directions[node])) {
+                cut[node] = 1;
+                if (m.directions[node] == no_flow) break;
+            }
+        }
+        for (Index node = 0; node < terrain.grid.size(); ++node) {
+            const bool data = !std::isnan(terrain.elevation_m[node]);
+            REQUIRE(m.complete[node] == (data && !cut[node]));
+        }
+    }
+}
+
+TEST_CASE("basins are the maximal complete catchments, largest first") {
+    const Measured m = measure_drawn(7, 9, R"(
+        . . . . . . . . .
+        . v . . . . v . .
+        . v . . . . v . .
+        . > v . . . v . .
+        . . > v < < < < <
+        . . . v . . . . .
+        . . . . . . . . .)");
+    const std::vector<Basin> found = basins(m.graph, m.area_m2, m.complete, 2, EdgeBasins::drop);
+    REQUIRE(found.size() == 2);
+    CHECK(found[0].outlet == 4 * 9 + 2);
+    CHECK(found[0].area_m2 == 5);
+    CHECK(found[0].complete);
+    CHECK(found[1].outlet == 3 * 9 + 6);
+    CHECK(found[1].area_m2 == 3);
+    const std::vector<Basin> trees = basins(m.graph, m.area_m2, m.complete, 2, EdgeBasins::keep);
+    REQUIRE(trees.size() == 1);
+    CHECK(trees[0].outlet == 6 * 9 + 3);
+    CHECK(trees[0].area_m2 == 16);
+    CHECK_FALSE(trees[0].complete);
+}
+
+TEST_CASE("equal basins come in the order of their outlets") {
+    const Measured m = measure_drawn(3, 3, R"(
+        > . v
+        . . .
+        . < .)");
+    const std::vector<Basin> found = basins(m.graph, m.area_m2, m.complete, 2, EdgeBasins::keep);
+    REQUIRE(found.size() == 3);
+    CHECK(found[0].outlet == 1);
+    CHECK(found[1].outlet == 5);
+    CHECK(found[2].outlet == 6);
+}
+
+TEST_CASE("each node is labelled with its basin, and basins that overlap are refused") {
+    const Measured m = measure_drawn(2, 4, R"(
+        v 3 > v
+        . < . .)");
+    const std::vector<Basin> trees = basins(m.graph, m.area_m2, m.complete, 2, EdgeBasins::keep);
+    REQUIRE(trees.size() == 2);
+    CHECK(basin_labels(m.graph, trees) == std::vector<Index>{0, 0, 1, 1, 0, 0, none, 1});
+    const std::vector<Basin> nested{{.outlet = 7, .area_m2 = 3, .complete = true},
+                                    {.outlet = 3, .area_m2 = 2, .complete = true}};
+    CHECK_THROWS_AS(basin_labels(m.graph, nested), Error);
+}
+
+TEST_CASE("complete basins never overlap and hold exactly the complete nodes") {
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        for (const TestTerrain& terrain : assorted_terrains(seed)) {
+            const Measured m = measure(terrain.grid, terrain.elevation_m);
+            const std::vector<Basin> found = basins(m.graph, m.area_m2, m.complete, 0, EdgeBasins::drop);
+            const std::vector<Index> label = basin_labels(m.graph, found);
+            std::vector<double> labelled(found.size(), 0);
+            for (Index node = 0; node < terrain.grid.size(); ++node) {
+                REQUIRE((label[node] != none) == (m.complete[node] == 1));
+                if (label[node] != none) labelled[label[node]] += terrain.grid.area(node);
+            }
+            for (Index b = 0; b < found.size(); ++b) REQUIRE(labelled[b] == Approx(found[b].area_m2));
+        }
+    }
+}
