@@ -69,8 +69,8 @@ struct StepSums {
 };
 
 template <class Edges>
-StepReport erode_along(const Edges& edges, const Drainage& drainage, const River& river, const Setting& setting,
-                       double dt_yr, Landscape& landscape) {
+StepSums erode_along(const Edges& edges, const Drainage& drainage, const River& river, const Setting& setting,
+                     double dt_yr, Landscape& landscape) {
     StepSums sums;
     std::vector<double>& elevation = landscape.elevation_m;
     const double dt_k = dt_yr * river.k;
@@ -86,7 +86,7 @@ StepReport erode_along(const Edges& edges, const Drainage& drainage, const River
         sums.add(edges.area(node), uplift_m, step.elevation_m - before, step);
     }
     landscape.time_yr += dt_yr;
-    return sums.report(dt_yr);
+    return sums;
 }
 
 }  // namespace thalweg::evolve

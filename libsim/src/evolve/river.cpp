@@ -24,8 +24,9 @@ StepReport eroded(const T& topology, const Drainage& drainage, const River& rive
     check_setting(topology.size(), landscape, setting);
     check_river(river);
     check_step(dt_yr);
-    return with_edges(
-        topology, [&](const auto& edges) { return erode_along(edges, drainage, river, setting, dt_yr, landscape); });
+    return with_edges(topology, [&](const auto& edges) {
+        return erode_along(edges, drainage, river, setting, dt_yr, landscape).report(dt_yr);
+    });
 }
 
 }  // namespace

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "evolve/check_setting.hpp"
+#include "evolve/drainage.hpp"
+#include "evolve/erosion.hpp"
+#include "evolve/exchange_watch.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/evolve/simulate.hpp"
+
+namespace thalweg::evolve {
+namespace {
+
+/// Sweeps for which only the same nodes may exchange receivers before they are kept.
+constexpr Index patience = 20;
+
+/// u/k and the exponents of S = (u/k)^(1/n)·A^(−m/n), made once: the slope costs one root and one power per node.
+class SteadySlope {
+  public:
+    SteadySlope(const River& river, const Setting& setting)
+        : area_exponent_(river.m / river.n), talus_(river.talus_slope), slope_at_unit_area_(setting.uplift_m_per_yr) {
+        for (double& value : slope_at_unit_area_) value = value > 0 ? std::pow(value / river.k, 1 / river.n) : 0;
+    }
+
+    /// Infinite where a node rises and no water carries anything away.
+    double operator()(Index node, double area_m2) const {
+        if (slope_at_unit_area_[node] == 0) return 0;
+        return std::min(talus_, slope_at_unit_area_[node] / area_power(area_m2, area_exponent_));
+    }
+
+  private:
+    double area_exponent_;
+    double talus_;
+    std::vector<double> slope_at_unit_area_;
+};
+
+template <class Edges>
+void integrate(const Edges& edges, const Drainage& drainage, const SteadySlope& slope, Landscape& landscape) {
+    for (const Index node : drainage.order) {
+        const Slot slot = drainage.directions[node];
+        if (slot == no_flow) continue;
+        const double receiver_m = landscape.elevation_m[edges.neighbor(node, slot)];
+        landscape.elevation_m[node] = receiver_m + edges.length(node, slot) * slope(node, drainage.area_m2[node]);
+    }
+}
+
+/// Every node must have a finite steady slope whatever water it gets: rain on its own cell is the least.
+template <Topology T>
+void check_steady(const T& topology, const River& river, const Setting& setting) {
+    if (std::isfinite(river.talus_slope)) return;
+    for (Index node = 0; node < topology.size(); ++node) {
+        if (setting.boundary[node] == Boundary::base_level || !(setting.uplift_m_per_yr[node] > 0)) continue;
+        const double erosion = river.k * area_power(topology.area(node) * setting.rainfall[node], river.m);
+        if (erosion > 0) continue;
+        throw Error(
+            fmt::format("node {} rises but nothing wears it down (k·A^m is 0), so it has no steady height: give it "
+                        "erodibility and rain, or set a talus angle",
+                        node));
+    }
+}
+
+template <Topology T>
+SteadyResult solved(const T& topology, const River& river, const Setting& setting, Index max_sweeps,
+                    Landscape& landscape) {
+    check_setting(topology.size(), landscape, setting);
+    check_river(river);
+    check_steady(topology, river, setting);
+    const SteadySlope slope(river, setting);
+    ExchangeWatch exchange(topology.size(), patience);
+    Drainage drainage;
+    SteadyResult result{.sweeps = 0, .converged = false, .frozen_receivers = 0, .frozen = {}};
+    while (result.sweeps < max_sweeps) {
+        drain_into(topology, landscape, setting, river.receiver, exchange.frozen(), drainage);
+        const Index changes = exchange.observe(drainage.directions);
+        result.converged = result.sweeps > 0 && changes == 0;
+        if (result.converged) break;
+        if (exchange.only_the_same()) exchange.freeze();
+        with_edges(topology, [&](const auto& edges) { integrate(edges, drainage, slope, landscape); });
+        ++result.sweeps;
+    }
+    result.frozen_receivers = exchange.frozen_count();
+    result.frozen = exchange.frozen_mask();
+    return result;
+}
+
+}  // namespace
+
+SteadyResult solve_steady(const Grid& grid, const River& river, const Setting& setting, Index max_sweeps,
+                          Landscape& landscape) {
+    return solved(grid, river, setting, max_sweeps, landscape);
+}
+
+SteadyResult solve_steady(const Mesh& mesh, const River& river, const Setting& setting, Index max_sweeps,
+                          Landscape& landscape) {
+    return solved(mesh, river, setting, max_sweeps, landscape);
+}
+
+}  // namespace thalweg::evolve
