@@ -2,6 +2,7 @@
 """Reading what the commands wrote. What is absent reads as None or as an empty table: a figure then says so."""
 import json
 import os
+import re
 import tomllib
 from itertools import chain, islice
 
@@ -103,13 +104,16 @@ def _sentence(note):
 
 
 def reason(content, path):
-    """Why the value at `path` is null, as far as the notes tell."""
+    """Why the value at `path` is null, as far as the notes tell: by key, by its parents' key, or by being named."""
     notes = notes_of(content)
     last = path.rsplit(".", 1)[-1]
     for key, sentence in notes.items():
         if key in (path, last) or (key and path.startswith(key + ".")):
             return sentence
-    return next((sentence for sentence in notes.values() if last in sentence), "")
+    if len(last) < 4:  # too short to be told from an ordinary word
+        return ""
+    named = re.compile(rf"\b{re.escape(last)}\b")
+    return next((sentence for sentence in notes.values() if named.search(sentence)), "")
 
 
 def terrain_of(summary):

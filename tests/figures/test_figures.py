@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The figures and the report on a small made-up study. Run: /usr/bin/python3 -m unittest discover tests/figures"""
+import json
+import os
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+from html.parser import HTMLParser
+
+sys.dont_write_bytecode = True
+HERE = os.path.dirname(os.path.realpath(__file__))
+sys.path.insert(0, HERE)
+import mock_study  # noqa: E402
+
+PROGRAM = os.environ.get("THALWEG_FIGURES", os.path.join(HERE, "..", "..", "tools", "figures", "thalweg_figures.py"))
+EXPECTED = {"analyze": ("measure", ("map", "hypsometry", "slope_area", "horton")),
+            "simulate": ("simulate", ("map", "hypsometry", "slope_area", "history")),
+            "fit": ("fit", ("slope_area",)), "compare": ("compare", ("slope_area", "hypsometry", "horton"))}
+
+
+def run(*arguments):
+    return subprocess.run([sys.executable, "-I", PROGRAM, *arguments], capture_output=True, text=True, check=False)
+
+
+def contents(path):
+    with open(path, "rb") as stream:
+        return stream.read()
+
+
+def replace_numbers(value):
+    """The same structure with every number null and every list empty."""
+    if isinstance(value, dict):
+        return {key: replace_numbers(each) for key, each in value.items()}
+    if isinstance(value, list):
+        return []
+    return value if isinstance(value, str) else None
+
+
+class Links(HTMLParser):
+    """Collects everything that a browser would load or run."""
+
+    def __init__(self):
+        super().__init__()
+        self.loaded, self.alternatives, self.tags = [], [], []
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.append(tag)
+        found = dict(attributes)
+        self.loaded += [found[key] for key in ("src", "href", "srcset", "data") if found.get(key)]
+        if tag == "img":
+            self.alternatives.append(found.get("alt"))
+
+
+class Figures(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.study = self.temporary.name
+        mock_study.write_study(self.study)
+
+    def tearDown(self):
+        self.temporary.cleanup()
+
+    def path(self, *parts):
+        return os.path.join(self.study, *parts)
+
+    def succeed(self, *arguments):
+        result = run(*arguments)
+        self.assertEqual((result.returncode, result.stderr, result.stdout), (0, "", ""), arguments)
+
+    def test_each_command_writes_its_figures_with_the_same_bytes_twice(self):
+        for command, (folder, names) in EXPECTED.items():
+            with self.subTest(command):
+                self.succeed(command, self.path(folder))
+                files = [self.path(folder, "figures", name + ".png") for name in names]
+                self.assertEqual(sorted(os.listdir(self.path(folder, "figures"))), sorted(f"{n}.png" for n in names))
+                first = [contents(file) for file in files]
+                self.succeed(command, self.path(folder))
+                self.assertEqual(first, [contents(file) for file in files])
+                for image in first:
+                    width, height = struct.unpack(">II", image[16:24])
+                    self.assertGreater(min(width, height), 300)
+                    self.assertGreater(len(image), 5000)
+                    self.assertLess(len(image), 400_000)
+                    self.assertNotIn(b"tIME", image)
+
+    def test_the_report_has_the_same_bytes_twice_and_loads_nothing(self):
+        self.succeed("report", self.study)
+        page = contents(self.path("report.html"))
+        self.succeed("report", self.study)
+        self.assertEqual(page, contents(self.path("report.html")))
+        links = Links()
+        links.feed(page.decode())
+        self.assertEqual([link[:40] for link in links.loaded if not link.startswith(("data:image/", "#"))], [])
+        self.assertNotIn("script", links.tags)
+        self.assertIsNone(re.search(rb"@import|url\(", page.split(b"</style>")[0]))
+        self.assertEqual(len(links.alternatives), 6)
+        self.assertTrue(all(links.alternatives))
+        self.assertNotIn(self.study.encode(), page)
+
+    def test_the_report_shows_the_numbers_of_both_terrains(self):
+        for side, theta in (("a", 0.4321), ("b", 0.5678)):
+            self.edit(("compare", "comparison.json"), lambda c, s=side, t=theta: c[s]["terrain"]["slope_area"].update(theta=t))
+        self.succeed("report", self.study)
+        page = contents(self.path("report.html")).decode()
+        self.assertRegex(page, r"Concavity θ</th><td>0\.4321</td><td>0\.5678</td>")
+        self.assertIn("1.10 × 10<sup>−6</sup>", page)
+        self.assertIn("one DEM cannot tell whether uplift and incision balance", page)
+        self.assertIn("0" * 64, page)
+
+    def test_a_null_shows_as_a_dash_with_its_reason(self):
+        self.succeed("report", self.study)
+        page = contents(self.path("report.html")).decode()
+        self.assertRegex(page, r"Slope ratio <i>R</i><sub>S</sub></th><td>–<sup>a</sup></td>")
+        self.assertIn("<sup>a</sup> slopes of the highest order are not known", page)
+
+    def test_summaries_without_any_number_survive(self):
+        for parts in (("measure", "summary.json"), ("simulate", "summary.json"), ("fit", "fit.json"),
+                      ("compare", "comparison.json")):
+            content = replace_numbers(json.loads(contents(self.path(*parts))))
+            mock_study.write_json(self.path(*parts), content)
+        for name in ("hypsometry.csv", "slope_area.csv", "slope_area_points.csv"):
+            os.remove(self.path("measure", name))
+        os.remove(self.path("simulate", "history.csv"))
+        for command, (folder, _) in EXPECTED.items():
+            self.succeed(command, self.path(folder))
+        self.succeed("report", self.study)
+        self.assertNotRegex(contents(self.path("report.html")).decode().split("<figure")[0], r"\bnan\b|None")
+
+    def test_a_missing_raster_is_one_line_and_exit_code_1(self):
+        os.remove(self.path("measure", "filled.tif"))
+        for arguments in (("analyze", self.path("measure")), ("report", self.study), ("draw", self.study), ("fit",)):
+            result = run(*arguments)
+            self.assertEqual(result.returncode, 1, arguments)
+            self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
+
+    def test_projected_and_unreferenced_terrains_are_drawn_in_kilometres(self):
+        from osgeo import osr
+        utm = osr.SpatialReference()
+        utm.ImportFromEPSG(32616)
+        for name, crs in (("utm", utm), ("plain", None)):
+            folder = self.path(name)
+            summary = mock_study.write_terrain(folder, "filled.tif", mock_study.hills(50, 70), (700e3, 4050e3), 30.0, crs,
+                                               30.0, 40)
+            mock_study.write_json(os.path.join(folder, "summary.json"), summary)
+            self.succeed("analyze", folder)
+
+    def edit(self, parts, change):
+        content = json.loads(contents(self.path(*parts)))
+        change(content)
+        mock_study.write_json(self.path(*parts), content)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,309 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""report.html of a study: one file that opens anywhere, without network or scripts."""
+import base64
+import os
+from html import escape
+
+import curves
+import glossary
+import maps
+import style
+import summary_text
+from data import get, reason
+from study import Study
+from words import DASH, Footnotes, interval, number, plain, show, table
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+REAL = '<span class="real">real</span>'
+SYNTHETIC = '<span class="synthetic">synthetic</span>'
+
+
+def page(folder):
+    """The whole page as text."""
+    study = Study(folder)
+    with open(os.path.join(HERE, "report.css"), encoding="utf-8") as stream:
+        css = stream.read()
+    sections = [("terrain", "The two terrains", terrains), ("slopes", "Slope and drainage area", slopes),
+                ("shape", "Hypsometry and network", shape), ("numbers", "Numbers side by side", numbers),
+                ("fit", "The fit", fit), ("comparison", "How far apart", comparison),
+                ("run", "The simulation", simulation), ("notes", "Notes and warnings", notes),
+                ("glossary", "What the numbers mean", lambda _: glossary.html()),
+                ("provenance", "Provenance", provenance)]
+    body = [f'<section id="{key}"><h2><span class="no">{i}</span>{title}</h2>{build(study)}</section>'
+            for i, (key, title, build) in enumerate(sections, 1)]
+    links = "".join(f'<a href="#{key}">{title}</a>' for key, title, _ in sections)
+    return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
+            f'<meta name="viewport" content="width=device-width, initial-scale=1">'
+            f'<title>{escape(study.name())}: real and synthetic terrain</title><style>{css}</style></head>\n<body><main>'
+            f'{header(study, links)}{"".join(body)}</main></body></html>\n')
+
+
+def header(study, links):
+    version = get(study.manifest, "version")
+    program = "Thalweg" + (f" {escape(str(version))}" if version else "")
+    return (f'<header><p class="kicker">{program} · study report</p>'
+            f"<h1>{escape(study.name())}: a real terrain and its stream-power twin</h1>"
+            f"<nav>{links}</nav></header>"
+            f'<p class="lead">{summary_text.sentences(study)}</p>{summary_text.headline(study)}')
+
+
+def picture(content, kind, alt, caption, css=""):
+    """A figure with its image inside the page."""
+    source = f"data:image/{kind};base64,{base64.b64encode(content).decode()}"
+    return (f'<figure class="{css}"><img src="{source}" alt="{escape(alt, quote=True)}">'
+            f"<figcaption>{caption}</figcaption></figure>")
+
+
+def terrains(study):
+    real = (study.step("measure/filled.tif"), study.step("measure/network.gpkg"), "Real")
+    synthetic = (study.step("simulate/elevation.tif"), study.step("simulate/network.gpkg"), "Synthetic")
+    overview, lowest = maps.single(*real[:2])
+    both = maps.pair(real, synthetic)
+    threshold = number(get(study.measure, "channels.threshold_area_m2", 0) / 1e6)
+    rivers = "all rivers" if lowest == 1 else f"rivers of Strahler order {lowest} and above"
+    return (picture(style.png(both, style.DPI), "png",
+                    "Two shaded relief maps beside each other: the real terrain and the simulated one, with their rivers.",
+                    "<b>Figure 1.</b> Real and synthetic terrain at one scale and one "
+                    "range of colours, lit from the north-west, with rivers (wider with Strahler order) and basin outlines. "
+                    "Ground outside the simulated outline is pale.")
+            + picture(style.png(overview, style.MAP_DPI), "png",
+                      f"Shaded relief map of {study.name()} with {rivers} in blue and basin outlines in dark grey.",
+                      f"<b>Figure 2.</b> The whole measured terrain with {rivers} (channels begin at {threshold} km²) and the "
+                      "outlines of its larger basins.", "medium"))
+
+
+def slopes(study):
+    curve = curves.fitted_curve(study.fit, study.fit_table)
+    label = curves.law_label(study.fit.get("theta"), study.fit.get("theta_se"))
+    real_fit = (curve, label) if curve else curves.summary_line(study.real)
+    drawing = curves.slope_area_pair([study.real, study.synthetic], (None, study.theory),
+                                     (real_fit, curves.summary_line(study.synthetic)))
+    theta = [show(get(side.terrain, "slope_area.theta")) for side in (study.real, study.synthetic)]
+    law = " The dotted line is the steady state that the simulation aims at." if study.theory else ""
+    return picture(style.svg(drawing), "svg+xml",
+                   f"Slope against drainage area on logarithmic axes; concavity {theta[0]} real, {theta[1]} synthetic.",
+                   "<b>Figure 3.</b> Slope against drainage area: single measurements (dots), means of bins of a tenth of a "
+                   "decade with their standard errors, and the fitted law <i>S</i> = <i>k</i><sub>s</sub> <i>A</i>"
+                   f"<sup>−θ</sup> (line; the real one with its 95 % band).{law}")
+
+
+def shape(study):
+    integrals = [show(get(side.terrain, "hypsometry.integral")) for side in study.compared]
+    return (picture(style.svg(curves.hypsometry(study.compared)), "svg+xml",
+                    f"Hypsometric curves; integral {integrals[0]} real, {integrals[1]} synthetic.",
+                    "<b>Figure 4.</b> Hypsometric curves: the share of the area above each relative height.", "narrow")
+            + picture(style.svg(curves.horton(study.compared)), "svg+xml",
+                      "Four plots of stream number, mean length, mean drainage area and mean slope against Strahler order.",
+                      "<b>Figure 5.</b> Horton’s laws: streams of each Strahler order, their mean length, drainage area and "
+                      "slope. The ratios are those of the regression lines.", "medium"))
+
+
+#: label, factor to the shown unit, unit, digits, paths (the first that exists counts)
+ROWS = (
+    ("Ground",),
+    ("Area", 1e-6, "km²", 4, "input.area_m2", "domain_area_m2"),
+    ("Lowest elevation", 1, "m", 4, "input.elevation_min_m"),
+    ("Highest elevation", 1, "m", 4, "input.elevation_max_m", "elevation_max_m"),
+    ("Mean elevation", 1, "m", 4, "input.elevation_mean_m", "elevation_mean_m"),
+    ("Hypsometric integral", 1, "", 3, "hypsometry.integral"),
+    ("Skewness of the hypsometric curve", 1, "", 3, "hypsometry.skewness"),
+    ("Kurtosis of the hypsometric curve", 1, "", 3, "hypsometry.kurtosis"),
+    ("Slope and area",),
+    ("Concavity θ", 1, "", 4, "slope_area.theta"),
+    ("Steepness <i>k</i><sub>s</sub>", 1, "m<sup>2θ</sup>", 3, "slope_area.ks"),
+    ("Goodness of the law, <i>r</i>²", 1, "", 3, "slope_area.r2"),
+    ("Channels",),
+    ("Channel threshold", 1e-6, "km²", 3, "channels.threshold_area_m2"),
+    ("Share of channels in complete catchments", 100, "%", 3, "channels.share_used"),
+    ("Sources", 1, "", 3, "channels.sources"),
+    ("Links", 1, "", 3, "channels.links"),
+    ("Junctions", 1, "", 3, "channels.junctions"),
+    ("Total length", 1e-3, "km", 4, "channels.total_length_m"),
+    ("Drainage density", 1e3, "km/km²", 3, "channels.drainage_density_per_m"),
+    ("Constant of channel maintenance", 1, "m", 3, "channels.constant_of_channel_maintenance_m"),
+    ("Highest Strahler order", 1, "", 3, "channels.max_strahler"),
+    ("Highest Shreve magnitude", 1, "", 3, "channels.max_shreve"),
+    ("Horton’s ratios (regression)",),
+    ("Bifurcation ratio <i>R</i><sub>B</sub>", 1, "", 3, "horton.RB.regression"),
+    ("Length ratio <i>R</i><sub>L</sub>", 1, "", 3, "horton.RL.regression"),
+    ("Area ratio <i>R</i><sub>A</sub>", 1, "", 3, "horton.RA.regression"),
+    ("Slope ratio <i>R</i><sub>S</sub>", 1, "", 3, "horton.RS.regression"),
+    ("More of the network",),
+    ("Tokunaga <i>a</i>", 1, "", 3, "tokunaga.a"),
+    ("Tokunaga <i>c</i>", 1, "", 3, "tokunaga.c"),
+    ("Hack’s exponent", 1, "", 3, "hack.exponent"),
+    ("Flint’s exponent <i>q</i>", 1, "", 3, "flint.q"),
+    ("Exterior over interior link length", 1, "", 3, "links.exterior_interior_ratio"),
+    ("Mean junction angle", 1, "°", 3, "junctions.mean_angle_deg"),
+    ("Steepness <i>k</i><sub>sn</sub> (median)", 1, "", 3, "chi.ksn_median"),
+)
+OPTIONAL = ("More of the network",)  # shown only where measured
+
+
+def numbers(study):
+    footnotes, rows = Footnotes(), []
+    optional = False
+    for row in ROWS:
+        if len(row) == 1:
+            optional = row[0] in OPTIONAL
+            rows.append(list(row))
+            continue
+        label, factor, unit, digits, *paths = row
+        found = [study.value(which, *paths) for which in (0, 1)]
+        if optional and found[0][0] is None and found[1][0] is None:
+            continue
+        rows.append([label, *(_cell(value, factor, digits, why, footnotes) for value, why in found), unit or DASH])
+    rows = [row for i, row in enumerate(rows) if len(row) > 1 or (i + 1 < len(rows) and len(rows[i + 1]) > 1)]
+    covers = f"<p>Both sides were measured by the same code. The real one covers {_coverage(study)}.</p>"
+    return covers + table(["", REAL, SYNTHETIC, "unit"], rows, "numbers-table") + footnotes.html()
+
+
+def _coverage(study):
+    name = get(study.comparison.get("a") if isinstance(study.comparison.get("a"), dict) else {}, "covers")
+    if name:
+        return escape(str(name))
+    return "the complete catchments of the DEM" if study.compared[0] is study.real else "the ground that was compared"
+
+
+def _cell(value, factor, digits, why, footnotes):
+    if value is None:
+        return DASH + footnotes.mark(why)
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and factor != 1:
+        value = float(value) * factor
+    return show(value, digits)
+
+
+FIT_ROWS = (
+    ("Concavity θ = <i>m</i>/<i>n</i>", "theta", "theta_se", "theta_ci95", "", 4),
+    ("Area exponent <i>m</i>", "m", "m_se", "m_ci95", "", 4),
+    ("Erodibility <i>k</i>", "k", "k_se", "k_ci95", "m<sup>1−2<i>m</i></sup>/yr", 3),
+    ("<i>k</i> <i>A</i><sub>0</sub><sup><i>m</i></sup> at the reference area", "k_at_reference_area",
+     "k_at_reference_area_se", "k_at_reference_area_ci95", "m/yr", 3),
+    ("Steepness <i>k</i><sub>s</sub>", "ks", "ks_se", "ks_ci95", "m<sup>2θ</sup>", 3),
+    ("<i>k</i>/<i>u</i>", "k_over_uplift", "k_over_uplift_se", "k_over_uplift_ci95", "m<sup>−2<i>m</i></sup>", 3),
+)
+
+
+def fit(study):
+    content = study.fit
+    if not content:
+        return "<p>No fit was made.</p>"
+    footnotes, rows = Footnotes(), []
+    for label, key, error, bounds, unit, digits in FIT_ROWS:
+        if key not in content:
+            continue
+        value = content[key]
+        why = footnotes.mark(reason(content, key)) if value is None else ""
+        spread = interval(content.get(bounds), digits) or _two_errors(value, content.get(error), digits)
+        rows.append([label, show(value, digits) + why, number(content.get(error), 2), spread or DASH, unit or DASH])
+    return (_fit_words(content) + table(["", "value", "standard error", "95 % interval", "unit"], rows)
+            + footnotes.html() + _caveats(content))
+
+
+def _two_errors(value, error, digits):
+    if not isinstance(value, (int, float)) or not isinstance(error, (int, float)):
+        return ""
+    return interval([value - 1.96 * error, value + 1.96 * error], digits)
+
+
+def _fit_words(content):
+    method = escape(str(content.get("method") or "slope-area"))
+    low, high = content.get("area_range_m2") or [None, None]
+    area = "" if low is None or high is None else f" between {number(low / 1e6)} and {number(high / 1e6)} km²"
+    given = f"<i>n</i> = {plain(content.get('n'))}"
+    uplift = content.get("uplift_m_per_yr")
+    if uplift is not None:
+        given += f" and an uplift of {plain(uplift * 1000)} mm/yr"
+    state = "converged" if content.get("converged") else "did not converge"
+    message = f" ({escape(str(content['message']))})" if content.get("message") else ""
+    return (f"<p>Method <i>{method}</i> on drainage areas{area}, given {given}. It {state} in "
+            f"{show(content.get('iterations'))} iterations{message}; reduced χ² {show(content.get('reduced_chi2'))}.</p>")
+
+
+def _caveats(content):
+    points = []
+    if content.get("uplift_m_per_yr") is None:
+        points.append("No uplift rate was given: slope and area alone tell θ and the ratio of uplift to erodibility, not "
+                      "<i>k</i> itself.")
+    else:
+        points.append("<i>k</i> is as good as the uplift rate it was given: twice the uplift would make twice the "
+                      "<i>k</i>, with the same slopes. Another <i>n</i> would change <i>k</i> and <i>m</i> both.")
+    area = content.get("reference_area_m2")
+    if area is not None:
+        points.append(f"Compare <i>k</i> <i>A</i><sub>0</sub><sup><i>m</i></sup> at the reference area "
+                      f"<i>A</i><sub>0</sub> = {number(area / 1e6)} km² rather than <i>k</i>: log <i>k</i> and <i>m</i> are "
+                      f"correlated at {show(content.get('correlation_log_k_m'))}.")
+    points.append("The law assumes that incision balances uplift everywhere along these rivers, on one rock and under one "
+                  "climate; where it does not, the numbers are averages that fit, not properties of the rock.")
+    return "<ul>" + "".join(f"<li>{point}</li>" for point in points) + "</ul>"
+
+
+def comparison(study):
+    aspects = study.comparison.get("aspects") or []
+    if not aspects:
+        return "<p>The two terrains were not compared.</p>"
+    footnotes, rows = Footnotes(), []
+    for aspect in aspects:
+        cells = []
+        for key in ("a", "b", "distance", "scale", "verdict"):
+            value = aspect.get(key)
+            why = reason(study.comparison, f"{aspect.get('name')}.{key}") if value is None else ""
+            cells.append(show(value) + footnotes.mark(why))
+        rows.append([escape(str(aspect.get("name", "")).replace("_", " ").capitalize().replace("Slope area", "Slope–area")),
+                     *cells])
+    head = ["aspect", REAL, SYNTHETIC, "distance", "scale (model’s own spread)", "verdict"]
+    return table(head, rows) + footnotes.html()
+
+
+def simulation(study):
+    run = study.simulate
+    words = summary_text.run_sentence(run)
+    if not study.history:
+        return words
+    return words + picture(style.svg(curves.history(study.history)), "svg+xml",
+                           "Highest and mean elevation, and the largest rate of change, against time.",
+                           "<b>Figure 6.</b> The simulated terrain on its way: elevation, and how fast it still changes.")
+
+
+def notes(study):
+    found = study.notes()
+    if not found:
+        return "<p>Nothing was noted.</p>"
+    lines = (f"<li><b>{step}</b>{' · ' + escape(key) if key else ''}: {escape(text)}</li>" for step, key, text in found)
+    return "<ul>" + "".join(lines) + "</ul>"
+
+
+#: Left out: what changes from run to run, and lists that are better read in the manifest itself.
+UNSHOWN = ("seconds", "timing", "date", "time", "threads", "outputs", "files", "notes", "warnings", "experiment",
+           "parameters")
+
+
+def provenance(study):
+    rows = [[label, show(get(study.measure, path))] for label, path in
+            (("DEM", "input.file"), ("SHA-256", "input.sha256"), ("Coordinate system", "input.crs"))]
+    grid = [get(study.measure, f"input.{key}") for key in ("rows", "cols", "dx_m", "dy_m")]
+    if None not in grid:
+        rows.append(["Grid", f"{grid[0]} × {grid[1]} cells of {number(grid[2], 4)} × {number(grid[3], 4)} m"])
+    rows += [[escape(key.replace("_", " ").capitalize()), _value(key, value)] for key, value in study.manifest.items()
+             if not key.lower().startswith(UNSHOWN)]
+    text = _experiment_text(study)
+    resolved = f"<details><summary>The experiment, every value resolved</summary><pre>{text}</pre></details>" if text else ""
+    return (table(["", ""], rows, "text") + "<p>Every file and its checksum stand in <code>manifest.json</code>; "
+            "<code>thalweg verify</code> repeats the study from it.</p>" + resolved)
+
+
+def _value(key, value):
+    if key in ("command", "argv") and isinstance(value, list):
+        return f"<code>{escape(' '.join(map(str, value)))}</code>"
+    if isinstance(value, list):
+        return "<br>".join(show(each) for each in value)
+    return show(value, 8)
+
+
+def _experiment_text(study):
+    for folder in (study.step("simulate"), study.folder):
+        path = os.path.join(folder, "experiment.toml")
+        if os.path.exists(path):
+            with open(path, encoding="utf-8") as stream:
+                return escape(stream.read())
+    return ""
