@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "thalweg/core/grid.hpp"
+#include "thalweg/core/random.hpp"
+#include "thalweg/terrain/accumulate.hpp"
+#include "thalweg/terrain/flats.hpp"
+#include "thalweg/terrain/lakes.hpp"
+#include "thalweg/terrain/route.hpp"
+
+/// A steady stream-power landscape made without the simulator, for judging what is measured on it.
+namespace thalweg::support {
+
+/// S = slope_at_reference·(A/reference_area)^(−θ), that is k·A0^m = u/S0^n and m = n·θ.
+struct SteadyLaw {
+    double theta = 0.5;
+    double slope_at_reference = 0.08;
+    double reference_area_m2 = 3e6;
+    double slope(double area_m2) const { return slope_at_reference * std::pow(area_m2 / reference_area_m2, -theta); }
+};
+
+/// Heights of a square raster whose rim is at 0: random noise is routed, the law's slopes are integrated up the trees,
+/// and both are repeated until no receiver changes (or 400 times: a few cells may go on exchanging receivers).
+inline std::vector<double> steady_raster(const Grid& grid, const SteadyLaw& law, std::uint64_t seed) {
+    std::vector<Boundary> boundary(grid.size(), Boundary::interior);
+    std::vector<double> height(grid.size(), 0);
+    for (Index node = 0; node < grid.size(); ++node) {
+        const Index row = grid.row(node), col = grid.col(node);
+        const bool rim = row == 0 || col == 0 || row + 1 == grid.rows || col + 1 == grid.cols;
+        if (rim) boundary[node] = Boundary::base_level;
+        if (!rim) height[node] = uniform_at(seed, 0, node);
+    }
+    FlowDirections previous;
+    for (int sweep = 0; sweep < 400; ++sweep) {
+        FlowDirections directions = terrain::route(grid, height, boundary);
+        terrain::drain_lakes(grid, height, boundary, directions);
+        if (directions == previous) break;
+        const auto graph = terrain::flow_graph(grid, height, directions);
+        const auto area = terrain::accumulate(graph, terrain::cell_areas(grid));
+        for (const Index node : graph.order) {
+            const Index receiver = graph.receiver[node];
+            if (receiver != none) height[node] = height[receiver] + graph.length[node] * law.slope(area[node]);
+        }
+        previous = std::move(directions);
+    }
+    return height;
+}
+
+/// A DEM as the pipeline sees it: flats resolved, lakes led out, carved, drained to its edge.
+struct RoutedDem {
+    terrain::FlowGraph graph;
+    std::vector<double> area_m2, carved_m;
+};
+
+inline RoutedDem routed_dem(const Grid& grid, const std::vector<double>& elevation_m) {
+    const auto boundary = terrain::data_edge(grid, elevation_m);
+    FlowDirections directions = terrain::route(grid, elevation_m, boundary);
+    terrain::resolve_flats(grid, elevation_m, boundary, directions);
+    terrain::drain_lakes(grid, elevation_m, boundary, directions);
+    RoutedDem dem{.graph = terrain::flow_graph(grid, elevation_m, directions), .area_m2 = {}, .carved_m = {}};
+    dem.area_m2 = terrain::accumulate(dem.graph, terrain::cell_areas(grid));
+    dem.carved_m = terrain::carve(dem.graph, elevation_m);
+    return dem;
+}
+
+}  // namespace thalweg::support
