@@ -3,7 +3,6 @@
 
 #include <optional>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "thalweg/channel/horton.hpp"
@@ -70,9 +69,10 @@ struct Statistics {
 };
 
 /// The one pipeline behind analyze, simulate and compare: `slopes` are the slope–area points measured on the terrain in
-/// the way that suits it (segments of carved profiles on a raster, nodes on a mesh).
-Statistics measure(const RoutedTerrain&, const MeasureOptions&, std::vector<channel::SlopeAreaPoint> slopes,
-                   double area_m2);
+/// the way that suits it (segments of carved profiles on a raster, nodes on a mesh); `ground_m` is the surface before any
+/// conditioning, of which the hypsometry and the relief are taken.
+Statistics measure(const RoutedTerrain&, std::span<const double> ground_m, const MeasureOptions&,
+                   std::vector<channel::SlopeAreaPoint> slopes);
 
 /// How a DEM was made to drain.
 struct ConditioningReport {

@@ -33,7 +33,7 @@ struct Experiment {
         std::vector<double> size_m;
         std::optional<Index> nodes;
         std::optional<double> spacing_m;
-        MeshKind mesh = MeshKind::tin;
+        std::optional<MeshKind> mesh;                    ///< default: TIN; in a study, the DEM's own raster
         std::optional<std::filesystem::path> dem;
         InitialSurface initial = InitialSurface::noise;
     } domain;

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "thalweg/study/domain.hpp"
+
+namespace thalweg::study {
+
+/// Runs the simulation that an experiment describes and writes summary.json, elevation.tif, drainage_area.tif, the CSVs,
+/// network.gpkg and the resolved experiment.toml into an existing folder. Returns the text of summary.json.
+/// Throws Error where river.k or river.m is missing or the domain cannot be made.
+std::string simulate(const Experiment&, const std::filesystem::path& folder, const Messages&);
+
+/// The same on a catchment that has been cut out already.
+std::string simulate(const Experiment&, const Catchment&, const std::filesystem::path& folder, const Messages&);
+
+}  // namespace thalweg::study

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/fit.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "study/report_json.hpp"
+#include "study/results.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/io/table_file.hpp"
+#include "thalweg/study/output_folder.hpp"
+
+namespace thalweg::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The curve to be fitted, and whether the landscape is known to be steady.
+struct Target {
+    std::vector<channel::SlopeAreaBin> bins;
+    std::string measured_on;
+    Json steady_check;
+};
+
+/// Nodes of a simulation whose slope the river made, not the talus limit.
+Target node_target(const fs::path& folder) {
+    const Table table = io::read_csv(folder / "slope_area_nodes.csv");
+    const auto& area = numbers_of(table, "area_m2");
+    const auto& slope = numbers_of(table, "slope");
+    const auto& limited = numbers_of(table, "talus_limited");
+    std::vector<channel::SlopeAreaPoint> points;
+    for (std::size_t i = 0; i < area.size(); ++i) {
+        if (limited[i] == 0) points.push_back({area[i], slope[i]});
+    }
+    const Json summary = read_json(folder / "summary.json");
+    return {.bins = channel::slope_area_bins(points),
+            .measured_on = "nodes",
+            .steady_check = {{"converged", summary.value("converged", Json())},
+                             {"mean_rate_m_per_yr", summary.value("mean_rate_m_per_yr", Json())}}};
+}
+
+Target analyzed_target(const fs::path& folder) {
+    const Table table = io::read_csv(folder / "slope_area.csv");
+    const auto& area = numbers_of(table, "area_m2");
+    const auto& slope = numbers_of(table, "slope");
+    const auto& slope_se = numbers_of(table, "slope_se");
+    const auto& count = numbers_of(table, "count");
+    Target target{.bins = {}, .measured_on = "analyze folder", .steady_check = Json::object()};
+    for (std::size_t i = 0; i < area.size(); ++i) {
+        target.bins.push_back({area[i], slope[i], slope_se[i], static_cast<Index>(count[i])});
+    }
+    return target;
+}
+
+Target raster_target(const fs::path& file, const FitOptions& options, const Messages& messages) {
+    const NamedRaster dem = read_dem(file, options.read, messages);
+    messages.progress("routing flow and measuring");
+    return {.bins = measure_raster(dem.raster, options.measure).statistics.slope_area.bins,
+            .measured_on = "raster",
+            .steady_check = Json::object()};
+}
+
+Target target_of(const fs::path& path, const FitOptions& options, const Messages& messages) {
+    switch (kind_of(path)) {
+        case ResultKind::analyzed: return analyzed_target(path);
+        case ResultKind::simulated:
+            if (options.from == FitFrom::nodes) return node_target(path);
+            return raster_target(path / "elevation.tif", options, messages);
+        case ResultKind::file: break;
+    }
+    return raster_target(path, options, messages);
+}
+
+Json value_or_null(const std::optional<Estimate>& e) { return e ? number(e->value) : Json(nullptr); }
+Json se_or_null(const std::optional<Estimate>& e) { return e ? number(e->standard_error) : Json(nullptr); }
+
+Json fit_json(const infer::SlopeAreaFit& f, const FitOptions& options, const Target& target) {
+    Json steady = target.steady_check;
+    steady["curvature"] = number(f.curvature.value);
+    steady["curvature_se"] = number(f.curvature.standard_error);
+    const auto& u = options.fit.uplift_m_per_yr;
+    return {{"method", "slope-area"},
+            {"measured_on", target.measured_on},
+            {"n", f.n},
+            {"uplift_m_per_yr", u ? Json(*u) : Json(nullptr)},
+            {"uplift_sd_m_per_yr", options.fit.uplift_sd_m_per_yr},
+            {"k", value_or_null(f.k)},
+            {"k_unit", f.k_unit},
+            {"k_se", se_or_null(f.k)},
+            {"k_ci95", f.k ? interval(*f.k) : Json(nullptr)},
+            {"k_over_uplift", number(f.k_over_uplift.value)},
+            {"k_over_uplift_se", number(f.k_over_uplift.standard_error)},
+            {"reference_area_m2", f.reference_area_m2},
+            {"k_at_reference_area", number(f.k_at_reference_area.value)},
+            {"k_at_reference_area_se", number(f.k_at_reference_area.standard_error)},
+            {"k_at_reference_area_ci95", interval(f.k_at_reference_area)},
+            {"m", number(f.m.value)},
+            {"m_se", number(f.m.standard_error)},
+            {"m_ci95", interval(f.m)},
+            {"area_range_m2", numbers(f.area_range_m2)},
+            {"steady_check", steady},
+            {"theta", number(f.theta.value)},
+            {"theta_se", number(f.theta.standard_error)},
+            {"theta_ci95", interval(f.theta)},
+            {"ks", number(f.ks.value)},
+            {"ks_se", number(f.ks.standard_error)},
+            {"correlation_log_k_m", number(f.correlation_log_k_m)},
+            {"reduced_chi2", number(f.reduced_chi2)},
+            {"degrees_of_freedom", f.degrees_of_freedom},
+            {"iterations", f.iterations},
+            {"converged", f.converged},
+            {"message", f.message},
+            {"identifiable", f.identifiable},
+            {"notes", f.notes}};
+}
+
+Table curve_table(const infer::SlopeAreaFit& f) {
+    Table table = slope_area_table(f.bins);
+    table.columns.push_back({"fitted_slope", f.fitted_slope});
+    return table;
+}
+
+}  // namespace
+
+FitOutcome fit(const fs::path& path, const FitOptions& options, const fs::path& folder, const Messages& messages) {
+    const Target target = target_of(path, options, messages);
+    messages.progress("fitting");
+    FitOutcome outcome{infer::fit_slope_area(target.bins, options.fit), ""};
+    outcome.json = text_of(fit_json(outcome.fit, options, target));
+    io::write_csv(folder / "fit.csv", curve_table(outcome.fit));
+    write_text(folder / "fit.json", outcome.json);
+    return outcome;
+}
+
+}  // namespace thalweg::study

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/results.hpp"
+
+#include <fmt/format.h>
+
+#include "thalweg/core/error.hpp"
+
+namespace thalweg::study {
+
+ResultKind kind_of(const std::filesystem::path& path) {
+    if (!std::filesystem::is_directory(path)) return ResultKind::file;
+    if (std::filesystem::is_regular_file(path / "slope_area_nodes.csv")) return ResultKind::simulated;
+    if (std::filesystem::is_regular_file(path / "summary.json")) return ResultKind::analyzed;
+    throw Error(fmt::format("'{}' is neither a DEM nor the folder of an analyze or simulate run", path.string()));
+}
+
+const std::vector<double>& numbers_of(const Table& table, const std::string& column) {
+    for (const Column& c : table.columns) {
+        if (c.name != column) continue;
+        if (const auto* values = std::get_if<std::vector<double>>(&c.values)) return *values;
+    }
+    throw Error(fmt::format("table '{}' has no column of numbers '{}'", table.name, column));
+}
+
+}  // namespace thalweg::study

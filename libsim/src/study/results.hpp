@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Private: what the folders of earlier commands hold.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "thalweg/core/table.hpp"
+
+namespace thalweg::study {
+
+enum class ResultKind { file, analyzed, simulated };
+
+/// What a path names: a file (a DEM), or the folder of an analyze or a simulate run.
+/// Throws Error for anything else.
+ResultKind kind_of(const std::filesystem::path&);
+
+/// A column of numbers. Throws Error where the table has none of that name.
+const std::vector<double>& numbers_of(const Table&, const std::string& column);
+
+}  // namespace thalweg::study

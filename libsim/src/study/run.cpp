@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "study/report_json.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/study/compare.hpp"
+#include "thalweg/study/figure.hpp"
+#include "thalweg/study/fit.hpp"
+#include "thalweg/study/manifest.hpp"
+#include "thalweg/study/output_folder.hpp"
+#include "thalweg/study/simulate.hpp"
+
+namespace thalweg::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path step_folder(const fs::path& folder, const char* step) {
+    fs::create_directory(folder / step);
+    return folder / step;
+}
+
+/// The experiment that simulates what was fitted: the study's uplift and the fitted k and m on the DEM's own raster.
+Experiment fitted_experiment(const Experiment& study, const infer::SlopeAreaFit& fit) {
+    if (!(fit.k && fit.k->value > 0 && fit.m.value > 0)) {
+        throw Error(fmt::format("the fit gives m = {:.3g}, with which no landscape can be simulated: slopes do not "
+                                "fall downstream in the range of areas (see study.area_min_m2 and study.area_max_m2)",
+                                fit.m.value));
+    }
+    Experiment e = study;
+    e.domain.dem = study.study.dem;
+    e.domain.mesh = study.domain.mesh.value_or(MeshKind::raster);
+    e.uplift.rate_m_per_yr = *study.study.uplift_m_per_yr;
+    e.river.k = fit.k->value;
+    e.river.m = fit.m.value;
+    return e;
+}
+
+FitOptions fit_options(const Experiment& e) {
+    FitOptions options;
+    options.fit.n = e.river.n;
+    options.fit.uplift_m_per_yr = e.study.uplift_m_per_yr;
+    options.fit.uplift_sd_m_per_yr = e.study.uplift_sd_m_per_yr;
+    options.fit.area_min_m2 = e.study.area_min_m2;
+    options.fit.area_max_m2 = e.study.area_max_m2;
+    return options;
+}
+
+/// Relative path and checksum of every file of the study, in order of the path.
+Json checksums(const fs::path& folder) {
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_regular_file()) files.push_back(fs::relative(entry.path(), folder));
+    }
+    std::sort(files.begin(), files.end());
+    Json list = Json::array();
+    for (const fs::path& file : files) {
+        list.push_back({{"file", file.generic_string()}, {"sha256", sha256_of(folder / file)}});
+    }
+    return list;
+}
+
+Json manifest_json(const Experiment& e, const NamedRaster& dem, const fs::path& folder) {
+    const Versions v = versions();
+    Json libraries;
+    for (const auto& [name, version] : v.libraries) libraries[name] = version;
+    return {{"program", "thalweg"},
+            {"version", v.thalweg},
+            {"commit", v.commit},
+            {"libraries", libraries},
+            {"command", "thalweg run experiment.toml"},
+            {"seed", e.seed},
+            {"input", {{"file", dem.file}, {"sha256", dem.sha256}, {"crs", dem.crs_name}}},
+            {"steps", {"measure", "basin", "fit", "simulate", "synthetic", "compare"}},
+            {"outputs", checksums(folder)}};
+}
+
+void draw_all(const fs::path& folder, const Messages& messages) {
+    messages.progress("drawing");
+    draw_figures("report", folder);
+}
+
+}  // namespace
+
+std::string run_study(const Experiment& e, Figures figures, const fs::path& folder, const Messages& messages) {
+    if (!e.study.dem) throw Error("study.dem is needed: the DEM to be explained");
+    if (!e.study.uplift_m_per_yr) {
+        throw Error("study.uplift_m_per_yr is needed: slopes alone tell only k/u, and a simulation needs both");
+    }
+    const auto start = std::chrono::steady_clock::now();
+    write_text(folder / "experiment.toml", to_toml(e));
+    MeasureOptions options;
+    options.channel_area_m2 = e.study.channel_area_m2;
+    const NamedRaster dem = read_dem(*e.study.dem, {}, messages);
+    analyze(dem, options, step_folder(folder, "measure"), messages);
+
+    const Catchment catchment = largest_complete_catchment(dem.raster, options);
+    NamedRaster basin{catchment.raster, dem.file, dem.sha256, dem.crs_name, {}};
+    analyze(basin, options, step_folder(folder, "basin"), messages);
+
+    const FitOutcome fitted =
+        fit(folder / "basin", fit_options(e), step_folder(folder, "fit"), messages);
+    simulate(fitted_experiment(e, fitted.fit), catchment, step_folder(folder, "simulate"), messages);
+
+    const NamedRaster synthetic = read_dem(folder / "simulate/elevation.tif", {}, messages);
+    analyze(synthetic, options, step_folder(folder, "synthetic"), messages);
+    compare(folder / "basin", folder / "synthetic", {}, step_folder(folder, "compare"), messages);
+
+    Json manifest = manifest_json(e, dem, folder);
+    write_text(folder / "manifest.json", text_of(manifest));
+    if (figures == Figures::draw) draw_all(folder, messages);
+    manifest["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    std::string text = text_of(manifest);
+    write_text(folder / "manifest.json", text);
+    return text;
+}
+
+}  // namespace thalweg::study

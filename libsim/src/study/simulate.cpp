@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "study/report_json.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/evolve/simulate.hpp"
+#include "thalweg/io/polygonize.hpp"
+#include "thalweg/io/table_file.hpp"
+#include "thalweg/study/output_folder.hpp"
+#include "thalweg/study/tables.hpp"
+#include "thalweg/surface/heightfield.hpp"
+#include "thalweg/terrain/accumulate.hpp"
+
+namespace thalweg::study {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+class Stopwatch {
+  public:
+    double seconds() const {
+        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+
+  private:
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+evolve::River river_of(const Experiment& e) {
+    if (!e.river.k) throw Error("river.k (erodibility) is needed");
+    if (!e.river.m) throw Error("river.m (exponent of the drainage area) is needed");
+    evolve::River river{.k = *e.river.k, .m = *e.river.m, .n = e.river.n, .receiver = e.river.receiver};
+    if (e.hillslope.talus_angle_deg) {
+        const double angle = *e.hillslope.talus_angle_deg;
+        if (angle < 90) river.talus_slope = std::tan(angle * std::numbers::pi / 180);
+    }
+    return river;
+}
+
+/// What came out of either solver, in one shape.
+struct Outcome {
+    Index steps = 0;
+    double time_yr = nan;
+    bool converged = false;
+    std::string stop_reason;
+    double max_rate_m_per_yr = nan, mean_rate_m_per_yr = nan;
+    Index frozen_receivers = 0;
+    std::optional<evolve::MassBalance> mass;
+    std::vector<evolve::StepRecord> history;
+};
+
+template <class Topology>
+Outcome step_through_time(const Topology& topology, const evolve::River& river, const Experiment& e, Domain& domain,
+                          const Messages& messages) {
+    Outcome o;
+    const auto observe = [&](const evolve::StepRecord& record, const evolve::Landscape&) {
+        o.history.push_back(record);
+        if (record.step % 50 == 0) {
+            messages.progress(fmt::format("step {}: highest {:.1f} m, mean rate {:.3g} m/yr, {} lakes", record.step,
+                                          record.elevation_max_m, record.mean_rate_m_per_yr, record.lakes));
+        }
+    };
+    const evolve::TimeOptions time{e.time.step_yr, e.time.max_steps, e.time.convergence};
+    const evolve::SimulationResult r =
+        evolve::simulate(topology, river, domain.setting, time, domain.start, observe);
+    o.steps = r.steps;
+    o.time_yr = domain.start.time_yr;
+    o.converged = r.stop_reason == evolve::StopReason::converged;
+    o.stop_reason = evolve::to_string(r.stop_reason);
+    o.max_rate_m_per_yr = r.max_rate_m_per_yr;
+    o.mean_rate_m_per_yr = r.mean_rate_m_per_yr;
+    o.frozen_receivers = r.frozen_receivers;
+    o.mass = r.mass;
+    return o;
+}
+
+template <class Topology>
+Outcome solve_directly(const Topology& topology, const evolve::River& river, const Experiment& e, Domain& domain) {
+    const evolve::SteadyResult r =
+        evolve::solve_steady(topology, river, domain.setting, e.time.max_steps, domain.start);
+    Outcome o;
+    o.steps = r.sweeps;
+    o.converged = r.converged;
+    o.stop_reason = r.converged ? "receivers no longer change" : "all sweeps used";
+    o.frozen_receivers = r.frozen_receivers;
+    return o;
+}
+
+/// The finished landscape, routed once more, with all that is written about it.
+struct Finished {
+    RoutedTerrain terrain;
+    std::vector<std::uint8_t> talus_limited;
+    Index lakes = 0;
+    std::vector<channel::SlopeAreaPoint> river_slopes;
+    Statistics statistics;
+};
+
+template <class Topology>
+Finished finish(const Topology& topology, const evolve::River& river, const Domain& domain, const Experiment& e) {
+    Finished f;
+    const evolve::Drainage drainage = evolve::drain(topology, domain.start, domain.setting, river.receiver);
+    f.lakes = drainage.lakes;
+    f.talus_limited = evolve::at_talus_limit(topology, drainage, river, domain.start);
+    f.terrain.graph = terrain::flow_graph(topology, domain.start.elevation_m, drainage.directions);
+    f.terrain.elevation_m = domain.start.elevation_m;
+    f.terrain.cell_area_m2 = terrain::cell_areas(topology);
+    f.terrain.drainage_area_m2 = drainage.area_m2;
+    f.terrain.complete.assign(topology.size(), 1);
+    std::vector<std::uint8_t> free(f.talus_limited);
+    for (std::uint8_t& flag : free) flag = !flag;
+    f.river_slopes = channel::node_slopes(f.terrain.graph, f.terrain.drainage_area_m2, f.terrain.elevation_m, free);
+    MeasureOptions options;
+    options.channel_area_m2 = e.study.channel_area_m2;
+    f.statistics = measure(f.terrain, f.terrain.elevation_m, options, f.river_slopes);
+    return f;
+}
+
+Table node_table(const Finished& f) {
+    std::vector<double> area, slope;
+    std::vector<std::int64_t> limited;
+    for (Index node = 0; node < f.terrain.graph.size(); ++node) {
+        const Index receiver = f.terrain.graph.receiver[node];
+        if (receiver == none) continue;
+        const double drop = f.terrain.elevation_m[node] - f.terrain.elevation_m[receiver];
+        if (!(drop > 0)) continue;
+        area.push_back(f.terrain.drainage_area_m2[node]);
+        slope.push_back(drop / f.terrain.graph.length[node]);
+        limited.push_back(f.talus_limited[node]);
+    }
+    return {.name = "slope_area_nodes",
+            .columns = {{"area_m2", area}, {"slope", slope}, {"talus_limited", limited}},
+            .kind = GeometryKind::no_geometry,
+            .geometry = {}};
+}
+
+Table history_table(const std::vector<evolve::StepRecord>& history) {
+    std::vector<std::int64_t> step, lakes;
+    std::vector<double> time, highest, mean, max_rate, mean_rate, seconds;
+    for (const auto& r : history) {
+        step.push_back(r.step);
+        time.push_back(r.time_yr);
+        lakes.push_back(r.lakes);
+        highest.push_back(r.elevation_max_m);
+        mean.push_back(r.elevation_mean_m);
+        max_rate.push_back(r.max_rate_m_per_yr);
+        mean_rate.push_back(r.mean_rate_m_per_yr);
+        seconds.push_back(r.seconds);
+    }
+    return {.name = "history",
+            .columns = {{"step", step}, {"time_yr", time}, {"lakes", lakes}, {"elevation_max_m", highest},
+                        {"elevation_mean_m", mean}, {"max_rate_m_per_yr", max_rate},
+                        {"mean_rate_m_per_yr", mean_rate}, {"seconds", seconds}},
+            .kind = GeometryKind::no_geometry,
+            .geometry = {}};
+}
+
+/// Rasters of the result: elevation, drainage area and basin of the nearest node.
+struct Heightfield {
+    Raster elevation;
+    std::vector<double> drainage_area_m2;
+    std::vector<Index> basin_of;
+};
+
+template <class T>
+std::vector<T> pick(const std::vector<T>& values, const std::vector<Index>& node, T outside) {
+    std::vector<T> picked(node.size(), outside);
+    for (std::size_t i = 0; i < node.size(); ++i) {
+        if (node[i] != none) picked[i] = values[node[i]];
+    }
+    return picked;
+}
+
+Heightfield heightfield(const Grid& grid, const Domain& domain, const Finished& f, const Experiment& e) {
+    if (e.output.resolution) {
+        throw Error("output.resolution does not apply to a raster mesh: it is written at its own cells");
+    }
+    Heightfield h{{grid, domain.placement, f.terrain.elevation_m}, f.terrain.drainage_area_m2, f.statistics.basin_of};
+    for (Index node = 0; node < grid.size(); ++node) {
+        if (std::isnan(f.terrain.elevation_m[node])) h.drainage_area_m2[node] = nan;
+    }
+    return h;
+}
+
+Heightfield heightfield(const Mesh& mesh, const Domain& domain, const Finished& f, const Experiment& e) {
+    constexpr Index usual_resolution = 512;
+    Heightfield h;
+    h.elevation = surface::covering_raster(mesh, e.output.resolution.value_or(usual_resolution));
+    surface::interpolate_linear(mesh, f.terrain.elevation_m, h.elevation);
+    const std::vector<Index> node = surface::nearest_node(mesh, h.elevation);
+    h.drainage_area_m2 = pick(f.terrain.drainage_area_m2, node, nan);
+    h.basin_of = pick(f.statistics.basin_of, node, none);
+    Placement& place = h.elevation.placement;
+    place.crs_wkt = domain.placement.crs_wkt;
+    place.west /= domain.unit_m;
+    place.north /= domain.unit_m;
+    place.cell_width /= domain.unit_m;
+    place.cell_height /= domain.unit_m;
+    return h;
+}
+
+PositionOf map_positions(const Domain& domain, const Raster& elevation) {
+    if (std::holds_alternative<Grid>(domain.topology)) return positions(elevation);
+    return [&domain](Index node) {
+        return Point{domain.positions_m[node].x / domain.unit_m, domain.positions_m[node].y / domain.unit_m};
+    };
+}
+
+void write_results(const Heightfield& h, const Finished& f, const Outcome& o, const PositionOf& position,
+                   const std::filesystem::path& folder) {
+    const Raster& e = h.elevation;
+    io::write_raster(folder / "elevation.tif", e.grid, e.placement, e.values,
+                     {.nodata = {}, .description = "elevation (m)"});
+    io::write_raster(folder / "drainage_area.tif", e.grid, e.placement, h.drainage_area_m2,
+                     {.nodata = {}, .description = "drainage area of the nearest node (m2)"});
+    const Statistics& s = f.statistics;
+    auto outlines = io::cell_outlines(e, h.basin_of, static_cast<Index>(s.basins.size()));
+    io::write_geopackage(folder / "network.gpkg",
+                         {links_table(s.network, position), junctions_table(s.network, position),
+                          basins_table(s, position, std::move(outlines))},
+                         e.placement.crs_wkt);
+    io::write_csv(folder / "slope_area_nodes.csv", node_table(f));
+    io::write_csv(folder / "slope_area.csv", slope_area_table(s.slope_area.bins));
+    io::write_csv(folder / "hypsometry.csv", hypsometry_table(s.hypsometry));
+    io::write_csv(folder / "history.csv", history_table(o.history));
+}
+
+Json mass_json(const Outcome& o, std::vector<std::string>& notes) {
+    if (!o.mass) {
+        notes.push_back("mass_balance: the steady solver takes no steps through time, so nothing is moved");
+        Json empty;
+        for (const char* key : {"uplifted_m3", "eroded_m3", "talus_m3", "diffused_m3", "deposited_m3", "exported_m3",
+                                "stored_m3", "relative_residual"}) {
+            empty[key] = nullptr;
+        }
+        return empty;
+    }
+    const evolve::MassBalance& m = *o.mass;
+    return {{"uplifted_m3", m.uplifted_m3}, {"eroded_m3", m.eroded_m3},     {"talus_m3", m.talus_m3},
+            {"diffused_m3", 0.0},           {"deposited_m3", 0.0},          {"exported_m3", m.exported_m3},
+            {"stored_m3", m.stored_m3},     {"relative_residual", number(m.relative_residual())}};
+}
+
+TerrainInput input_of(const Domain& domain, const Finished& f) {
+    TerrainInput input;
+    input.geographic = domain.placement.geographic;
+    input.valid_cells = static_cast<Index>(f.terrain.graph.order.size());
+    input.nodata_cells = f.terrain.graph.size() - input.valid_cells;
+    for (const Index node : f.terrain.graph.order) input.area_m2 += f.terrain.cell_area_m2[node];
+    if (const Grid* grid = std::get_if<Grid>(&domain.topology)) {
+        input.rows = grid->rows;
+        input.cols = grid->cols;
+        input.dx_m = grid->east_west[grid->rows / 2];
+        input.dy_m = grid->north_south[(grid->rows - 1) / 2];
+    }
+    return input;
+}
+
+Json summary_json(const Domain& domain, const Outcome& o, const Finished& f, const PositionOf& position) {
+    std::vector<std::string> notes;
+    const TerrainInput input = input_of(domain, f);
+    if (input.rows == 0) notes.push_back("input: a triangulated mesh has no rows, columns or cell size");
+    notes.push_back("input: a simulated terrain is no file and has no checksum");
+    notes.push_back("conditioning: a simulated terrain drains over its passes as it is");
+    if (std::isnan(o.time_yr)) notes.push_back("time_yr and rates: undefined for the steady solver");
+    Json summary{{"nodes", input.valid_cells},
+                 {"steps", o.steps},
+                 {"time_yr", number(o.time_yr)},
+                 {"converged", o.converged},
+                 {"stop_reason", o.stop_reason},
+                 {"max_rate_m_per_yr", number(o.max_rate_m_per_yr)},
+                 {"mean_rate_m_per_yr", number(o.mean_rate_m_per_yr)},
+                 {"frozen_receivers", o.frozen_receivers},
+                 {"domain_area_m2", domain.area_m2},
+                 {"cell_area_sum_m2", input.area_m2},
+                 {"elevation_max_m", number(f.statistics.hypsometry.maximum_m)},
+                 {"elevation_mean_m", number(f.statistics.hypsometry.mean_m)},
+                 {"lakes_final", f.lakes},
+                 {"mass_balance", mass_json(o, notes)}};
+    summary["terrain"] = terrain_json(input, f.statistics, position, nullptr, notes);
+    summary["terrain"]["measured_on"] = "mesh";
+    summary["notes"] = notes;
+    return summary;
+}
+
+template <class Topology>
+std::string run(const Topology& topology, const Experiment& e, Domain& domain, double mesh_seconds,
+                const std::filesystem::path& folder, const Messages& messages) {
+    const evolve::River river = river_of(e);
+    messages.progress(fmt::format("simulating {} nodes", topology.size()));
+    const Stopwatch simulating;
+    const Outcome outcome = e.time.solver == Solver::steady
+                                ? solve_directly(topology, river, e, domain)
+                                : step_through_time(topology, river, e, domain, messages);
+    const double simulate_seconds = simulating.seconds();
+
+    messages.progress("measuring and writing");
+    const Stopwatch writing;
+    const Finished finished = finish(topology, river, domain, e);
+    const Heightfield h = heightfield(topology, domain, finished, e);
+    const PositionOf position = map_positions(domain, h.elevation);
+    write_results(h, finished, outcome, position, folder);
+    write_text(folder / "experiment.toml", to_toml(e));
+    Json summary = summary_json(domain, outcome, finished, position);
+    const double output_seconds = writing.seconds();
+    summary["seconds"] = {{"mesh", mesh_seconds},
+                          {"simulate", simulate_seconds},
+                          {"output", output_seconds},
+                          {"total", mesh_seconds + simulate_seconds + output_seconds}};
+    summary["seconds_per_node_step"] =
+        simulate_seconds / (static_cast<double>(finished.terrain.graph.order.size()) * std::max<Index>(1, outcome.steps));
+    std::string text = text_of(summary);
+    write_text(folder / "summary.json", text);
+    return text;
+}
+
+template <class MakeDomain>
+std::string simulate_on(const Experiment& e, const std::filesystem::path& folder, const Messages& messages,
+                        MakeDomain make) {
+    river_of(e);
+    messages.progress("making the mesh");
+    const Stopwatch meshing;
+    Domain domain = make();
+    const double mesh_seconds = meshing.seconds();
+    // The topology is moved out, so that the solver can change the rest of the domain beside it.
+    const auto topology = std::move(domain.topology);
+    domain.topology = std::holds_alternative<Grid>(topology) ? std::variant<Grid, Mesh>(std::get<Grid>(topology))
+                                                             : std::variant<Grid, Mesh>(Mesh{});
+    return std::visit([&](const auto& t) { return run(t, e, domain, mesh_seconds, folder, messages); }, topology);
+}
+
+}  // namespace
+
+std::string simulate(const Experiment& e, const std::filesystem::path& folder, const Messages& messages) {
+    return simulate_on(e, folder, messages, [&] { return make_domain(e, messages); });
+}
+
+std::string simulate(const Experiment& e, const Catchment& catchment, const std::filesystem::path& folder,
+                     const Messages& messages) {
+    return simulate_on(e, folder, messages, [&] { return make_domain(e, catchment); });
+}
+
+}  // namespace thalweg::study

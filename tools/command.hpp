@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "thalweg/study/analyze.hpp"
+
+namespace thalweg::tools {
+
+/// Options that every command has.
+struct CommonOptions {
+    std::string out;
+    bool force = false;
+    bool quiet = false;
+    bool json = false;
+    bool no_figures = false;
+    int threads = 0;
+};
+
+/// Adds them; `default_out` is where results go without --out.
+void add_common_options(CLI::App&, CommonOptions&, const std::string& default_out);
+
+/// Options about reading and measuring a DEM, shared by analyze, fit and compare.
+struct DemOptions {
+    std::string nodata, crs;
+    std::string channel_area_m2;
+    bool keep_edge_basins = false;
+};
+void add_dem_options(CLI::App&, DemOptions&);
+io::ReadOptions read_options(const DemOptions&);
+study::MeasureOptions measure_options(const DemOptions&);
+
+/// Progress and warnings on standard error, as far as they are wanted.
+study::Messages messages(const CommonOptions&);
+
+/// A number the user typed. Throws Error, naming the option, unless it is finite and, where asked, above zero.
+enum class Sign { any, positive, not_negative };
+double parse_number(const std::string& option, const std::string& text, Sign);
+
+/// Runs `work` with a folder to write into, which appears only if it succeeds, and prints what it returns with --json.
+/// `figures` names the drawings to be made ("" for none).
+void run_into_folder(const CommonOptions&, const std::string& figures,
+                     const std::function<std::string(const std::filesystem::path&, const study::Messages&)>& work);
+
+void add_analyze(CLI::App&);
+void add_simulate(CLI::App&);
+void add_fit(CLI::App&);
+void add_compare(CLI::App&);
+void add_run(CLI::App&);
+void add_version(CLI::App&);
+
+}  // namespace thalweg::tools

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/compare.hpp"
+
+#include <memory>
+
+#include "command.hpp"
+
+namespace thalweg::tools {
+namespace {
+
+struct Options {
+    CommonOptions common;
+    DemOptions dem;
+    std::string a, b;
+};
+
+void run(const Options& options) {
+    const study::CompareOptions compare{read_options(options.dem), measure_options(options.dem)};
+    run_into_folder(options.common, "compare", [&](const auto& folder, const study::Messages& m) {
+        return study::compare(options.a, options.b, compare, folder, m);
+    });
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("compare", "Compare two terrains: slope-area, hypsometry, Horton");
+    auto options = std::make_shared<Options>();
+    command->add_option("A", options->a, "a DEM, or the folder of an analyze or simulate run")->required();
+    command->add_option("B", options->b, "the same")->required();
+    add_dem_options(*command, options->dem);
+    add_common_options(*command, options->common, "comparison");
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace thalweg::tools

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/fit.hpp"
+
+#include <map>
+#include <memory>
+
+#include "command.hpp"
+
+namespace thalweg::tools {
+namespace {
+
+/// Numbers stay text until they are parsed with our own words for what is wrong.
+struct Options {
+    CommonOptions common;
+    DemOptions dem;
+    std::string target;
+    std::string uplift, uplift_sd, n, theta_fixed, area_min, area_max;
+    std::string method = "slope-area";
+    study::FitFrom from = study::FitFrom::nodes;
+};
+
+study::FitOptions fit_options(const Options& options) {
+    study::FitOptions fit;
+    fit.from = options.from;
+    fit.read = read_options(options.dem);
+    fit.measure = measure_options(options.dem);
+    const auto given = [](const char* name, const std::string& text, Sign sign) -> std::optional<double> {
+        if (text.empty()) return std::nullopt;
+        return parse_number(name, text, sign);
+    };
+    fit.fit.uplift_m_per_yr = given("--uplift-m-per-yr", options.uplift, Sign::positive);
+    fit.fit.uplift_sd_m_per_yr = given("--uplift-sd", options.uplift_sd, Sign::not_negative).value_or(0);
+    fit.fit.n = given("--n", options.n, Sign::positive).value_or(1);
+    fit.fit.theta_fixed = given("--theta-fixed", options.theta_fixed, Sign::positive);
+    fit.fit.area_min_m2 = given("--area-min-m2", options.area_min, Sign::not_negative);
+    fit.fit.area_max_m2 = given("--area-max-m2", options.area_max, Sign::positive);
+    return fit;
+}
+
+void run(const Options& options) {
+    const study::FitOptions fit = fit_options(options);
+    run_into_folder(options.common, "fit", [&](const auto& folder, const study::Messages& m) {
+        return study::fit(options.target, fit, folder, m).json;
+    });
+}
+
+}  // namespace
+
+void add_fit(CLI::App& app) {
+    CLI::App* command = app.add_subcommand("fit", "Fit k and m to the slope-area curve of a DEM or a simulation");
+    auto options = std::make_shared<Options>();
+    command->add_option("TARGET", options->target, "a DEM, or the folder of an analyze or simulate run")->required();
+    command->add_option("--uplift-m-per-yr", options->uplift, "uplift rate; without it only theta, ks and k/u are told");
+    command->add_option("--uplift-sd", options->uplift_sd, "its standard deviation (m/yr), carried into k's error");
+    command->add_option("--n", options->n, "slope exponent [default: 1]");
+    command->add_option("--method", options->method, "what is matched")->check(CLI::IsMember({"slope-area"}));
+    command->add_option("--area-min-m2", options->area_min, "smallest drainage area in the fit");
+    command->add_option("--area-max-m2", options->area_max, "largest drainage area in the fit");
+    command->add_option("--theta-fixed", options->theta_fixed, "hold the concavity m/n at this value");
+    const std::map<std::string, study::FitFrom> words{{"nodes", study::FitFrom::nodes},
+                                                      {"raster", study::FitFrom::raster}};
+    command->add_option("--from", options->from, "of a simulation: its mesh nodes, or its raster measured like a DEM")
+        ->transform(CLI::CheckedTransformer(words).description("{nodes,raster}"))
+        ->default_str("nodes");
+    add_dem_options(*command, options->dem);
+    add_common_options(*command, options->common, "fit");
+    command->callback([options] { run(*options); });
+}
+
+}  // namespace thalweg::tools

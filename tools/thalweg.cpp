@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line: a table of subcommands, and what becomes of errors.
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <new>
+#include <string>
+
+#include "command.hpp"
+#include "thalweg/core/error.hpp"
+
+namespace {
+
+constexpr int users_to_mend = 2;
+constexpr int ours_to_mend = 1;
+
+/// One line, whatever the message holds.
+int fail(int code, std::string message) {
+    for (char& c : message) {
+        if (c == '\n' || c == '\r') c = ' ';
+    }
+    while (!message.empty() && message.back() == ' ') message.pop_back();
+    std::cerr << "thalweg: error: " << message << '\n';
+    return code;
+}
+
+int parse_and_run(int argc, char** argv) {
+    CLI::App app{"Thalweg simulates landscapes, measures real ones, fits the one to the other, and compares them."};
+    app.name("thalweg");
+    app.require_subcommand(1);
+    app.failure_message([](const CLI::App*, const CLI::Error& error) { return std::string(error.what()); });
+    for (const auto add : {thalweg::tools::add_analyze, thalweg::tools::add_simulate, thalweg::tools::add_fit,
+                           thalweg::tools::add_compare, thalweg::tools::add_run, thalweg::tools::add_version}) {
+        add(app);
+    }
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        return app.exit(help);
+    } catch (const CLI::ParseError& error) {
+        return fail(users_to_mend, std::string(error.what()) + " (see thalweg --help)");
+    }
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return parse_and_run(argc, argv);
+    } catch (const thalweg::Error& error) {
+        return fail(users_to_mend, error.what());
+    } catch (const std::bad_alloc&) {
+        return fail(users_to_mend, "not enough memory for this size; use a smaller DEM or fewer nodes");
+    } catch (const std::filesystem::filesystem_error& error) {
+        return fail(users_to_mend, error.what());
+    } catch (const std::exception& error) {
+        return fail(ours_to_mend, std::string("a defect of thalweg, please report it: ") + error.what());
+    }
+}
