@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The figures and the report on a small made-up study. Run: /usr/bin/python3 -m unittest discover tests/figures"""
+import contextlib
+import io
 import json
 import os
-import re
 import struct
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 from html.parser import HTMLParser
 
@@ -16,12 +18,24 @@ sys.path.insert(0, HERE)
 import mock_study  # noqa: E402
 
 PROGRAM = os.environ.get("THALWEG_FIGURES", os.path.join(HERE, "..", "..", "tools", "figures", "thalweg_figures.py"))
+sys.path.insert(0, os.path.dirname(os.path.realpath(PROGRAM)))
+import thalweg_figures  # noqa: E402
+
 EXPECTED = {"analyze": ("measure", ("map", "hypsometry", "slope_area", "horton")),
             "simulate": ("simulate", ("map", "hypsometry", "slope_area", "history")),
             "fit": ("fit", ("slope_area",)), "compare": ("compare", ("slope_area", "hypsometry", "horton"))}
 
 
-def run(*arguments):
+def run_here(*arguments):
+    """In this process: what it loads is loaded once for all tests."""
+    errors = io.StringIO()
+    with contextlib.redirect_stderr(errors):
+        code = thalweg_figures.main(list(arguments))
+    return types.SimpleNamespace(returncode=code, stderr=errors.getvalue(), stdout="")
+
+
+def run_apart(*arguments):
+    """As the thalweg program calls it."""
     return subprocess.run([sys.executable, "-I", PROGRAM, *arguments], capture_output=True, text=True, check=False)
 
 
@@ -66,41 +80,40 @@ class Figures(unittest.TestCase):
     def path(self, *parts):
         return os.path.join(self.study, *parts)
 
-    def succeed(self, *arguments):
+    def succeed(self, *arguments, run=run_here):
         result = run(*arguments)
         self.assertEqual((result.returncode, result.stderr, result.stdout), (0, "", ""), arguments)
 
-    def test_each_command_writes_its_figures_with_the_same_bytes_twice(self):
-        for command, (folder, names) in EXPECTED.items():
-            with self.subTest(command):
-                self.succeed(command, self.path(folder))
-                files = [self.path(folder, "figures", name + ".png") for name in names]
-                self.assertEqual(sorted(os.listdir(self.path(folder, "figures"))), sorted(f"{n}.png" for n in names))
-                first = [contents(file) for file in files]
-                self.succeed(command, self.path(folder))
-                self.assertEqual(first, [contents(file) for file in files])
-                for image in first:
-                    width, height = struct.unpack(">II", image[16:24])
-                    self.assertGreater(min(width, height), 300)
-                    self.assertGreater(len(image), 5000)
-                    self.assertLess(len(image), 400_000)
-                    self.assertNotIn(b"tIME", image)
+    def test_a_study_drawn_at_once_in_another_process_has_the_bytes_of_its_parts_drawn_here(self):
+        self.succeed("study", self.study, run=run_apart)
+        for folder, names in EXPECTED.values():
+            self.assertEqual(sorted(os.listdir(self.path(folder, "figures"))), sorted(f"{n}.png" for n in names))
+            for image in (contents(self.path(folder, "figures", name + ".png")) for name in names):
+                self.assert_is_small_picture(image)
+        files = [self.path("report.html"), *(self.path("measure", "figures", n + ".png") for n in EXPECTED["analyze"][1])]
+        first = [contents(file) for file in files]
+        self.succeed("analyze", self.path("measure"))
+        self.succeed("report", self.study)
+        self.assertEqual(first, [contents(file) for file in files])
 
-    def test_the_report_has_the_same_bytes_twice_and_loads_nothing(self):
-        self.succeed("report", self.study)
-        page = contents(self.path("report.html"))
-        self.succeed("report", self.study)
-        self.assertEqual(page, contents(self.path("report.html")))
+    def assert_is_small_picture(self, image):
+        width, height = struct.unpack(">II", image[16:24])
+        self.assertGreater(min(width, height), 300)
+        self.assertGreater(len(image), 5000)
+        self.assertLess(len(image), 400_000)
+        self.assertNotIn(b"tIME", image)
+
+    def assert_loads_nothing(self, page):
         links = Links()
-        links.feed(page.decode())
+        links.feed(page)
         self.assertEqual([link[:40] for link in links.loaded if not link.startswith(("data:image/", "#"))], [])
         self.assertNotIn("script", links.tags)
-        self.assertIsNone(re.search(rb"@import|url\(", page.split(b"</style>")[0]))
+        self.assertNotRegex(page.split("</style>")[0], r"@import|url\(")
         self.assertEqual(len(links.alternatives), 6)
         self.assertTrue(all(links.alternatives))
-        self.assertNotIn(self.study.encode(), page)
+        self.assertNotIn(self.study, page)
 
-    def test_the_report_shows_the_numbers_of_both_terrains(self):
+    def test_the_report_loads_nothing_shows_both_terrains_and_says_why_a_number_is_missing(self):
         for side, theta in (("a", 0.4321), ("b", 0.5678)):
             self.edit(("compare", "comparison.json"), lambda c, s=side, t=theta: c[s]["terrain"]["slope_area"].update(theta=t))
         self.succeed("report", self.study)
@@ -109,10 +122,7 @@ class Figures(unittest.TestCase):
         self.assertIn("1.10 × 10<sup>−6</sup>", page)
         self.assertIn("one DEM cannot tell whether uplift and incision balance", page)
         self.assertIn("0" * 64, page)
-
-    def test_a_null_shows_as_a_dash_with_its_reason(self):
-        self.succeed("report", self.study)
-        page = contents(self.path("report.html")).decode()
+        self.assert_loads_nothing(page)
         self.assertRegex(page, r"Slope ratio <i>R</i><sub>S</sub></th><td>–<sup>a</sup></td>")
         self.assertIn("<sup>a</sup> slopes of the highest order are not known", page)
 
@@ -124,15 +134,13 @@ class Figures(unittest.TestCase):
         for name in ("hypsometry.csv", "slope_area.csv", "slope_area_points.csv"):
             os.remove(self.path("measure", name))
         os.remove(self.path("simulate", "history.csv"))
-        for command, (folder, _) in EXPECTED.items():
-            self.succeed(command, self.path(folder))
-        self.succeed("report", self.study)
+        self.succeed("study", self.study)
         self.assertNotRegex(contents(self.path("report.html")).decode().split("<figure")[0], r"\bnan\b|None")
 
     def test_a_missing_raster_is_one_line_and_exit_code_1(self):
         os.remove(self.path("measure", "filled.tif"))
         for arguments in (("analyze", self.path("measure")), ("report", self.study), ("draw", self.study), ("fit",)):
-            result = run(*arguments)
+            result = run_here(*arguments)
             self.assertEqual(result.returncode, 1, arguments)
             self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
 
