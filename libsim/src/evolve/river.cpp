@@ -25,7 +25,7 @@ StepReport eroded(const T& topology, const Drainage& drainage, const River& rive
     check_river(river);
     check_step(dt_yr);
     return with_edges(topology, [&](const auto& edges) {
-        return erode_along(edges, drainage, river, setting, dt_yr, landscape).report(dt_yr);
+        return erode_along(edges, drainage, river, SlopeSolver(river.n), setting, dt_yr, landscape).report(dt_yr);
     });
 }
 

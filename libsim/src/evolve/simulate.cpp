@@ -59,6 +59,7 @@ class Simulation {
           setting_(setting),
           options_(options),
           landscape_(landscape),
+          solve_(river.n),
           exchange_(topology.size(), patience) {}
 
     SimulationResult run(const Observer& observer) {
@@ -74,7 +75,7 @@ class Simulation {
     StepReport step() {
         drain_into(topology_, landscape_, setting_, river_.receiver, exchange_.frozen(), drainage_);
         const StepSums sums = with_edges(topology_, [&](const auto& edges) {
-            return erode_along(edges, drainage_, river_, setting_, options_.step_yr, landscape_);
+            return erode_along(edges, drainage_, river_, solve_, setting_, options_.step_yr, landscape_);
         });
         const StepReport report = sums.report(options_.step_yr);
         ++result_.steps;
@@ -83,7 +84,7 @@ class Simulation {
         result_.largest_newton_iterations =
             std::max(result_.largest_newton_iterations, report.largest_newton_iterations);
         add(result_.mass, report.mass);
-        if (options_.convergence > 0) judge(sums.moved.value(), sums.uplifted.value());
+        if (options_.convergence > 0) judge(sums.moved, sums.uplifted.value());
         return report;
     }
 
@@ -135,6 +136,7 @@ class Simulation {
     const Setting& setting_;
     const TimeOptions& options_;
     Landscape& landscape_;
+    SlopeSolver solve_;
     Drainage drainage_;
     ExchangeWatch exchange_;
     CalmWatch calm_;
