@@ -10,60 +10,6 @@
 namespace thalweg::terrain {
 namespace {
 
-/// Union-find by size with path halving. Each piece knows its lowest pit.
-class Joined {
-  public:
-    Joined(std::span<const Index> pit, std::span<const double> elevation_m)
-        : parent_(pit.size()), size_(pit.size(), 1), lowest_m_(pit.size(), -std::numeric_limits<double>::infinity()) {
-        std::iota(parent_.begin(), parent_.end(), 0u);
-        for (Index basin = 1; basin < pit.size(); ++basin) lowest_m_[basin] = elevation_m[pit[basin]];
-    }
-
-    Index find(Index basin) {
-        while (parent_[basin] != basin) {
-            parent_[basin] = parent_[parent_[basin]];
-            basin = parent_[basin];
-        }
-        return basin;
-    }
-
-    double lowest_m(Index piece) const { return lowest_m_[piece]; }
-
-    /// Joins two different pieces, each named by what `find` gives.
-    void join(Index a, Index b) {
-        if (size_[a] < size_[b]) std::swap(a, b);
-        parent_[b] = a;
-        size_[a] += size_[b];
-        lowest_m_[a] = std::min(lowest_m_[a], lowest_m_[b]);
-    }
-
-  private:
-    std::vector<Index> parent_;
-    std::vector<Index> size_;
-    std::vector<double> lowest_m_;
-};
-
-/// Kruskal's tree, and the number of lakes: where two pieces meet, the one with the higher pit ends as a lake of its
-/// own, unless they meet at the very height of that pit and it was only a part of a flat.
-struct Kruskal {
-    std::vector<Pass> tree;
-    Index lakes;
-};
-
-Kruskal join_lowest_first(std::vector<Pass> passes, Joined& joined) {
-    std::sort(passes.begin(), passes.end(), lower);
-    Index lakes = 0;
-    std::erase_if(passes, [&](const Pass& pass) {
-        const Index a = joined.find(pass.basin);
-        const Index b = joined.find(pass.other_basin);
-        if (a == b) return true;
-        if (pass.height_m > std::max(joined.lowest_m(a), joined.lowest_m(b))) ++lakes;
-        joined.join(a, b);
-        return false;
-    });
-    return {std::move(passes), lakes};
-}
-
 /// A pass straight out at the lowest pit of every piece that has no outlet.
 void open_closed_pieces(Joined& joined, std::span<const Index> pit, std::span<const double> elevation_m,
                         std::vector<Pass>& tree) {
@@ -125,55 +71,117 @@ SpillTree walk_from_outside(const std::vector<Pass>& tree, std::size_t basins) {
     return spill;
 }
 
+/// Lakes in a finished tree. A pass at the very height of the higher of its two pits joins no lake: if the other pit is
+/// lower the water runs off freely, if it is as high they are one flat.
+Index count_lakes(const std::vector<Pass>& tree, std::span<const Index> pit, std::span<const double> elevation_m) {
+    const auto pit_m = [&](Index basin) {
+        return basin == outside ? -std::numeric_limits<double>::infinity() : elevation_m[pit[basin]];
+    };
+    const Index basins = static_cast<Index>(pit.size());
+    Joined flats(basins);
+    std::vector<Index> level_ways;
+    for (Index i = 0; i < tree.size(); ++i) {
+        const double a = pit_m(tree[i].basin);
+        const double b = pit_m(tree[i].other_basin);
+        if (tree[i].height_m > std::max(a, b)) continue;
+        if (a == b) flats.join(tree[i].basin, tree[i].other_basin);
+        if (a != b) level_ways.push_back(a > b ? tree[i].basin : tree[i].other_basin);
+    }
+    std::vector<std::uint8_t> is_lake(basins, 0);
+    for (Index basin = 1; basin < basins; ++basin) is_lake[flats.find(basin)] = 1;
+    for (const Index basin : level_ways) is_lake[flats.find(basin)] = 0;
+    return static_cast<Index>(std::count(is_lake.begin(), is_lake.end(), 1));
+}
+
 }  // namespace
 
 bool lower(const Pass& a, const Pass& b) {
+    if (a.height_m != b.height_m) return a.height_m < b.height_m;
     const auto key = [](const Pass& pass) {
-        return std::tuple(pass.height_m, std::min(pass.node, pass.other_node), std::max(pass.node, pass.other_node));
+        return std::pair(std::min(pass.node, pass.other_node), std::max(pass.node, pass.other_node));
     };
     return key(a) < key(b);
 }
 
 LowestPasses::LowestPasses(Index expected) : table_(std::bit_ceil(std::size_t{2} * expected + 16), none) {
     passes_.reserve(expected);
+    pairs_.reserve(expected);
 }
 
-std::size_t LowestPasses::find_slot(Index basin, Index other_basin) const {
-    const std::uint64_t key = std::uint64_t{basin} << 32 | other_basin;
+std::size_t LowestPasses::find_slot(std::uint64_t pair) const {
     const std::size_t mask = table_.size() - 1;
-    std::size_t slot = (key * 0x9E3779B97F4A7C15u >> 20) & mask;  // Fibonacci hashing
-    while (table_[slot] != none) {
-        const Pass& pass = passes_[table_[slot]];
-        if (pass.basin == basin && pass.other_basin == other_basin) break;
-        slot = (slot + 1) & mask;
-    }
+    std::size_t slot = (pair * 0x9E3779B97F4A7C15u >> 20) & mask;  // Fibonacci hashing
+    while (table_[slot] != none && pairs_[table_[slot]] != pair) slot = (slot + 1) & mask;
     return slot;
 }
 
-void LowestPasses::offer(const Pass& offered) {
-    const Pass pass = offered.basin < offered.other_basin ? offered : reversed(offered);
-    const std::size_t slot = find_slot(pass.basin, pass.other_basin);
-    if (table_[slot] != none) {
-        Pass& best = passes_[table_[slot]];
-        if (lower(pass, best)) best = pass;
-        return;
+void LowestPasses::offer(Index piece, Index other_piece, const Pass& pass) {
+    const std::uint64_t pair = std::uint64_t{std::min(piece, other_piece)} << 32 | std::max(piece, other_piece);
+    if (pair != last_pair_) {
+        const std::size_t slot = find_slot(pair);
+        last_pair_ = pair;
+        last_ = table_[slot];
+        if (last_ == none) {
+            last_ = table_[slot] = static_cast<Index>(passes_.size());
+            passes_.push_back(pass);
+            pairs_.push_back(pair);
+            if (2 * passes_.size() > table_.size()) grow();
+            return;
+        }
     }
-    table_[slot] = static_cast<Index>(passes_.size());
-    passes_.push_back(pass);
-    if (2 * passes_.size() > table_.size()) grow();
+    Pass& best = passes_[last_];
+    if (lower(pass, best)) best = pass;
 }
 
 void LowestPasses::grow() {
     table_.assign(2 * table_.size(), none);
-    for (Index i = 0; i < passes_.size(); ++i) table_[find_slot(passes_[i].basin, passes_[i].other_basin)] = i;
+    for (Index i = 0; i < passes_.size(); ++i) table_[find_slot(pairs_[i])] = i;
 }
 
-SpillTree spill_tree(std::vector<Pass> passes, std::span<const Index> pit, std::span<const double> elevation_m) {
-    Joined joined(pit, elevation_m);
-    Kruskal kruskal = join_lowest_first(std::move(passes), joined);
-    open_closed_pieces(joined, pit, elevation_m, kruskal.tree);
-    SpillTree spill = walk_from_outside(kruskal.tree, pit.size());
-    spill.lakes = kruskal.lakes;
+Joined::Joined(Index basins) : parent_(basins), size_(basins, 1) { std::iota(parent_.begin(), parent_.end(), 0u); }
+
+Index Joined::find(Index basin) {
+    while (parent_[basin] != basin) {
+        parent_[basin] = parent_[parent_[basin]];
+        basin = parent_[basin];
+    }
+    return basin;
+}
+
+bool Joined::join(Index a, Index b) {
+    a = find(a);
+    b = find(b);
+    if (a == b) return false;
+    if (size_[a] < size_[b]) std::swap(a, b);
+    parent_[b] = a;
+    size_[a] += size_[b];
+    return true;
+}
+
+Pieces number_pieces(Joined& joined, Index basins) {
+    Pieces pieces{std::vector<Index>(basins, none), 0};
+    std::vector<Index> number(basins, none);
+    for (Index basin = 0; basin < basins; ++basin) {
+        Index& of_root = number[joined.find(basin)];
+        if (of_root == none) of_root = pieces.count++;
+        pieces.of_basin[basin] = of_root;
+    }
+    return pieces;
+}
+
+void join_over(std::span<const Pass> passes, Joined& joined, std::vector<Pass>& tree) {
+    for (const Pass& pass : passes) {
+        if (pass.basin != none && joined.join(pass.basin, pass.other_basin)) tree.push_back(pass);
+    }
+}
+
+void sort_lowest_first(std::vector<Pass>& passes) { std::sort(passes.begin(), passes.end(), lower); }
+
+SpillTree spill_tree(std::vector<Pass> tree, Joined& joined, std::span<const Index> pit,
+                     std::span<const double> elevation_m) {
+    open_closed_pieces(joined, pit, elevation_m, tree);
+    SpillTree spill = walk_from_outside(tree, pit.size());
+    spill.lakes = count_lakes(tree, pit, elevation_m);
     return spill;
 }
 

@@ -21,20 +21,47 @@ struct Pass {
 /// Total order of passes, so that the tree below is unique: height, then the smaller node, then the larger.
 bool lower(const Pass&, const Pass&);
 
-/// The lowest pass between each pair of basins, as they are offered: a hash table with open addressing.
+/// The lowest pass between each pair of pieces (of one or more basins), as they are offered: a hash table with open
+/// addressing.
 class LowestPasses {
   public:
     explicit LowestPasses(Index expected);
-    void offer(const Pass&);
+    void offer(Index piece, Index other_piece, const Pass&);
     std::vector<Pass> take() { return std::move(passes_); }
 
   private:
-    std::size_t find_slot(Index basin, Index other_basin) const;
+    std::size_t find_slot(std::uint64_t pair) const;
     void grow();
 
     std::vector<Pass> passes_;
-    std::vector<Index> table_;  // positions in passes_, `none` where free; a power of two long
+    std::vector<std::uint64_t> pairs_;  // whose pass it is: the smaller piece and the larger
+    std::vector<Index> table_;          // positions in passes_, `none` where free; a power of two long
+    std::uint64_t last_pair_ = 0;       // along a border the same pair is offered again and again
+    Index last_ = 0;
 };
+
+/// Basins joined to larger and larger pieces, each named by the number that `find` gives (the outside's is not fixed).
+class Joined {
+  public:
+    explicit Joined(Index basins);
+    Index find(Index basin);
+    /// False if they were joined already.
+    bool join(Index a, Index b);
+
+  private:
+    std::vector<Index> parent_;
+    std::vector<Index> size_;
+};
+
+/// Consecutive numbers of the pieces, per basin; the piece of the outside is 0.
+struct Pieces {
+    std::vector<Index> of_basin;
+    Index count;
+};
+Pieces number_pieces(Joined& joined, Index basins);
+
+/// Adds to `tree` the passes that join something, and joins it.
+void join_over(std::span<const Pass> passes, Joined& joined, std::vector<Pass>& tree);
 
 /// How each basin drains: over `node` (its own) into `other_node` of `other_basin`, at `height_m`.
 struct SpillTree {
@@ -43,8 +70,12 @@ struct SpillTree {
     Index lakes;                ///< basins that hold water; a flat pit counts once, however many basins it makes
 };
 
-/// Kruskal's algorithm from the outside. `pit` is the lowest node of each basin. Pieces that no pass joins to the
-/// outside drain at the lowest of their pits (ties: the lower node).
-SpillTree spill_tree(std::vector<Pass> passes, std::span<const Index> pit, std::span<const double> elevation_m);
+/// Passes sorted from the lowest, for Kruskal's algorithm.
+void sort_lowest_first(std::vector<Pass>& passes);
+
+/// Roots the tree at the outside. `pit` is the lowest node of each basin. Pieces that no pass joins to the outside
+/// drain at the lowest of their pits (ties: the lower node).
+SpillTree spill_tree(std::vector<Pass> tree, Joined& joined, std::span<const Index> pit,
+                     std::span<const double> elevation_m);
 
 }  // namespace thalweg::terrain

@@ -7,23 +7,13 @@
 
 #include "terrain/basin_graph.hpp"
 #include "terrain/check_sizes.hpp"
+#include "terrain/downhill.hpp"
+#include "terrain/passes.hpp"
+#include "terrain/terrain_view.hpp"
 #include "thalweg/core/parallel.hpp"
 
 namespace thalweg::terrain {
 namespace {
-
-/// The terrain as the algorithms below see it.
-template <Topology T>
-struct Terrain {
-    const T& topology;
-    std::span<const double> elevation_m;
-    std::span<const Boundary> boundary;
-
-    bool has_data(Index node) const { return !std::isnan(elevation_m[node]); }
-    bool is_stuck(Index node, const FlowDirections& directions) const {
-        return directions[node] == no_flow && boundary[node] == Boundary::interior && has_data(node);
-    }
-};
 
 /// First neighbour of equal height and lower index; `no_flow` if there is none. Flowing along these can never loop:
 /// height never rises, and where it stays the index falls.
@@ -37,23 +27,16 @@ Slot level_slot(const Terrain<T>& terrain, Index node) {
     return found;
 }
 
-/// Inner nodes without direction.
-template <Topology T>
-std::vector<Index> stuck_nodes(const Terrain<T>& terrain, const FlowDirections& directions) {
-    std::vector<Index> stuck;
-    for (Index node = 0; node < terrain.topology.size(); ++node) {
-        if (terrain.is_stuck(node, directions)) stuck.push_back(node);
-    }
-    return stuck;
-}
-
 /// Leads flats down their indices and returns, after an entry for the outside, the pits that remain: one per basin.
 template <Topology T>
 std::vector<Index> pits_after_joining_flats(const Terrain<T>& terrain, FlowDirections& directions) {
     std::vector<Index> pits{none};
-    for (const Index node : stuck_nodes(terrain, directions)) {
-        directions[node] = level_slot(terrain, node);
-        if (directions[node] == no_flow) pits.push_back(node);
+    auto at = std::find(directions.begin(), directions.end(), no_flow);
+    for (; at != directions.end(); at = std::find(at + 1, directions.end(), no_flow)) {
+        const Index node = static_cast<Index>(at - directions.begin());
+        if (terrain.boundary[node] != Boundary::interior || !terrain.has_data(node)) continue;
+        *at = level_slot(terrain, node);
+        if (*at == no_flow) pits.push_back(node);
     }
     return pits;
 }
@@ -68,7 +51,8 @@ std::vector<Index> label_basins(const Terrain<T>& terrain, const FlowDirections&
     const Index nodes = terrain.topology.size();
     std::vector<Index> basin(nodes, unlabelled);
     for (Index number = 1; number < pits.size(); ++number) basin[pits[number]] = number;
-    const auto receiver = [&](Index node) { return terrain.topology.neighbor(node, directions[node]); };
+    const auto neighbor = downhill(terrain.topology);
+    const auto receiver = [&](Index node) { return neighbor(node, directions[node]); };
     for (Index start = 0; start < nodes; ++start) {
         Index node = start;
         while (basin[node] == unlabelled && directions[node] != no_flow) node = receiver(node);
@@ -79,31 +63,28 @@ std::vector<Index> label_basins(const Terrain<T>& terrain, const FlowDirections&
     return basin;
 }
 
-/// Offers every edge between two basins once (twice towards the outside, which is not scanned), and the spills at open
-/// nodes.
-template <Topology T>
-std::vector<Pass> lowest_passes(const Terrain<T>& terrain, const std::vector<Index>& basin, Index basins) {
-    LowestPasses passes(3 * basins);
-    for (Index node = 0; node < terrain.topology.size(); ++node) {
-        const Index here = basin[node];
-        if (here == outside || here == none) continue;
-        const double height = terrain.elevation_m[node];
-        if (terrain.boundary[node] == Boundary::open) passes.offer({height, here, node, outside, none});
-        terrain.topology.neighbors(node, [&](Index neighbor, double, Slot) {
-            const Index there = basin[neighbor];
-            if (there == none || there >= here) return;
-            passes.offer({std::max(height, terrain.elevation_m[neighbor]), here, node, there, neighbor});
-        });
-    }
-    return passes.take();
-}
-
 /// What is known once all water has a way out.
 struct Lakes {
     std::vector<Index> pits;   ///< per basin; the outside has `none`
     std::vector<Index> basin;  ///< per node
     SpillTree spill;
 };
+
+/// The minimum spanning tree of the basins. One round of Borůvka's algorithm over the nodes joins every basin over its
+/// lowest pass, which leaves well under half as many pieces, and few passes between them for Kruskal's.
+template <Topology T>
+SpillTree join_basins(const Terrain<T>& terrain, const Lakes& lakes) {
+    const Index basins = static_cast<Index>(lakes.pits.size());
+    Joined joined(basins);
+    std::vector<Pass> tree;
+    tree.reserve(basins);
+    join_over(lowest_pass_of_each_basin(terrain, lakes.basin, basins), joined, tree);
+    const Pieces pieces = number_pieces(joined, basins);
+    std::vector<Pass> passes = passes_between_pieces(terrain, lakes.basin, pieces.of_basin, pieces.count);
+    sort_lowest_first(passes);
+    join_over(passes, joined, tree);
+    return spill_tree(std::move(tree), joined, lakes.pits, terrain.elevation_m);
+}
 
 template <Topology T>
 Lakes find_lakes(const Terrain<T>& terrain, FlowDirections& directions) {
@@ -112,8 +93,7 @@ Lakes find_lakes(const Terrain<T>& terrain, FlowDirections& directions) {
                 .spill = {.way_out = {}, .order = {}, .lakes = 0}};
     if (lakes.pits.size() == 1) return lakes;
     lakes.basin = label_basins(terrain, directions, lakes.pits);
-    lakes.spill = spill_tree(lowest_passes(terrain, lakes.basin, static_cast<Index>(lakes.pits.size())), lakes.pits,
-                             terrain.elevation_m);
+    lakes.spill = join_basins(terrain, lakes);
     return lakes;
 }
 

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "terrain/passes.hpp"
+
+namespace thalweg::terrain {
+namespace {
+
+bool is_inside(Index basin) { return basin != outside && basin != none; }
+
+/// Three rows of heights and basins, and the cell they begin with.
+struct Window {
+    const double* above;
+    const double* here;
+    const double* below;
+    const Index* basin_above;
+    const Index* basin_here;
+    const Index* basin_below;
+};
+
+Window window_of(const Terrain<Grid>& terrain, std::span<const Index> basin, Index row) {
+    const Index cols = terrain.topology.cols;
+    const double* here = terrain.elevation_m.data() + std::size_t{row} * cols;
+    const Index* basin_here = basin.data() + std::size_t{row} * cols;
+    return {here - cols, here, here + cols, basin_here - cols, basin_here, basin_here + cols};
+}
+
+/// Height of the lowest pass out of each inner cell of an inner row; infinite where all neighbours are of its basin.
+/// Selects only, so that the loop vectorises; NaN is never lower.
+void lowest_in_row(const Window& w, Index cols, double* height) {
+    for (Index c = 1; c + 1 < cols; ++c) {
+        const Index here = w.basin_here[c];
+        double lowest = std::numeric_limits<double>::infinity();
+        const auto offer = [&](double neighbor, Index there) {
+            const double foreign = there == here ? std::numeric_limits<double>::infinity() : neighbor;
+            lowest = foreign < lowest ? foreign : lowest;
+        };
+        offer(w.above[c - 1], w.basin_above[c - 1]);
+        offer(w.above[c], w.basin_above[c]);
+        offer(w.above[c + 1], w.basin_above[c + 1]);
+        offer(w.here[c - 1], w.basin_here[c - 1]);
+        offer(w.here[c + 1], w.basin_here[c + 1]);
+        offer(w.below[c - 1], w.basin_below[c - 1]);
+        offer(w.below[c], w.basin_below[c]);
+        offer(w.below[c + 1], w.basin_below[c + 1]);
+        height[c] = w.here[c] > lowest ? w.here[c] : lowest;
+    }
+}
+
+/// Looks closely only at the cells whose pass may be the lowest of their basin.
+void scan_row(const Terrain<Grid>& terrain, std::span<const Index> basin, Index row, std::vector<double>& height,
+              std::vector<Pass>& best) {
+    const Grid& grid = terrain.topology;
+    const Index first = row * grid.cols;
+    std::fill(height.begin(), height.end(), -std::numeric_limits<double>::infinity());
+    const bool inner = row > 0 && row + 1 < grid.rows;
+    if (inner) lowest_in_row(window_of(terrain, basin, row), grid.cols, height.data());
+    for (Index c = 0; c < grid.cols; ++c) {
+        const Index node = first + c;
+        if (!is_inside(basin[node])) continue;
+        const bool open = terrain.boundary[node] == Boundary::open;
+        Pass& lowest = best[basin[node]];
+        if (open || height[c] <= lowest.height_m) offer_ways_out(terrain, basin, node, lowest);
+    }
+}
+
+/// Offers the pass between two neighbours, named by basin and kept by piece.
+void offer_between(std::span<const double> elevation_m, std::span<const Index> basin, std::span<const Index> piece,
+                   Index node, Index other, LowestPasses& passes) {
+    const double height = std::max(elevation_m[node], elevation_m[other]);
+    passes.offer(piece[basin[node]], piece[basin[other]], {height, basin[node], node, basin[other], other});
+}
+
+template <Topology T>
+void offer_straight_out(const Terrain<T>& terrain, std::span<const Index> basin, std::span<const Index> piece,
+                        Index node, LowestPasses& passes) {
+    if (!is_inside(basin[node]) || terrain.boundary[node] != Boundary::open) return;
+    const Index here = piece[basin[node]];
+    if (here != outside) passes.offer(here, outside, {terrain.elevation_m[node], basin[node], node, outside, none});
+}
+
+/// Pieces of a row's cells; `none` stays.
+void pieces_of_row(std::span<const Index> basin, std::span<const Index> piece, Index first, std::vector<Index>& row) {
+    for (Index c = 0; c < row.size(); ++c) {
+        const Index here = basin[first + c];
+        row[c] = here == none ? none : piece[here];
+    }
+}
+
+}  // namespace
+
+std::vector<Pass> lowest_pass_of_each_basin(const Terrain<Grid>& terrain, std::span<const Index> basin, Index basins) {
+    std::vector<Pass> best(basins, no_pass);
+    std::vector<double> height(terrain.topology.cols);
+    for (Index row = 0; row < terrain.topology.rows; ++row) scan_row(terrain, basin, row, height, best);
+    return best;
+}
+
+std::vector<Pass> lowest_pass_of_each_basin(const Terrain<Mesh>& terrain, std::span<const Index> basin, Index basins) {
+    std::vector<Pass> best(basins, no_pass);
+    for (Index node = 0; node < terrain.topology.size(); ++node) {
+        if (is_inside(basin[node])) offer_ways_out(terrain, basin, node, best[basin[node]]);
+    }
+    return best;
+}
+
+std::vector<Pass> passes_between_pieces(const Terrain<Grid>& terrain, std::span<const Index> basin,
+                                        std::span<const Index> piece, Index pieces) {
+    const Grid& grid = terrain.topology;
+    LowestPasses passes(3 * pieces);
+    std::vector<Index> here(grid.cols), below(grid.cols, none);
+    pieces_of_row(basin, piece, 0, here);
+    for (Index row = 0; row < grid.rows; ++row) {
+        const Index first = row * grid.cols;
+        const bool last_row = row + 1 == grid.rows;
+        if (last_row) {
+            std::fill(below.begin(), below.end(), none);
+        } else {
+            pieces_of_row(basin, piece, first + grid.cols, below);
+        }
+        const auto offer = [&](Index own, Index c, Index there, Index other) {
+            if (own == there || own == none || there == none) return;
+            offer_between(terrain.elevation_m, basin, piece, first + c, other, passes);
+        };
+        for (Index c = 0; c < grid.cols; ++c) {
+            const Index own = here[c];
+            offer_straight_out(terrain, basin, piece, first + c, passes);
+            if (c + 1 < grid.cols) offer(own, c, here[c + 1], first + c + 1);
+            if (c + 1 < grid.cols) offer(own, c, below[c + 1], first + c + grid.cols + 1);
+            offer(own, c, below[c], first + c + grid.cols);
+            if (c > 0) offer(own, c, below[c - 1], first + c + grid.cols - 1);
+        }
+        std::swap(here, below);
+    }
+    return passes.take();
+}
+
+std::vector<Pass> passes_between_pieces(const Terrain<Mesh>& terrain, std::span<const Index> basin,
+                                        std::span<const Index> piece, Index pieces) {
+    LowestPasses passes(3 * pieces);
+    for (Index node = 0; node < terrain.topology.size(); ++node) {
+        if (basin[node] == none) continue;
+        offer_straight_out(terrain, basin, piece, node, passes);
+        terrain.topology.neighbors(node, [&](Index other, double, Slot) {
+            if (other > node || basin[other] == none || piece[basin[other]] == piece[basin[node]]) return;
+            offer_between(terrain.elevation_m, basin, piece, node, other, passes);
+        });
+    }
+    return passes.take();
+}
+
+}  // namespace thalweg::terrain
