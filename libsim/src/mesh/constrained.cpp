@@ -66,8 +66,13 @@ Vertex next_on_outline(const Constrained& constrained, Vertex from, Vertex here)
 
 void triangulate_conforming(std::vector<Point>& points, Index outline_count, std::span<const Index> order,
                             Constrained& constrained) {
+    if (outline_count < 3 || outline_count > points.size()) {
+        throw Error(
+            fmt::format("{} of {} points lie on the outline, which needs 3 or more", outline_count, points.size()));
+    }
     Delaunay delaunay;  // built without thought of constraints, which is faster, and then handed over
     const std::vector<Vertex> outline = insert_points(delaunay, points, outline_count, order);
+    if (delaunay.dimension() < 2) throw Error("the mesh's points all lie on one line");
     constrained.tds().swap(delaunay.tds());
     constrained.set_infinite_vertex(delaunay.infinite_vertex());
     constrain_outline(constrained, outline);

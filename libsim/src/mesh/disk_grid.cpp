@@ -31,7 +31,7 @@ double x_at(const Point& a, const Point& b, double y) { return a.x + (y - a.y) *
 
 }  // namespace
 
-DiskGrid::DiskGrid(const Polygon& outline, double spacing_m, const std::vector<Point>& outline_points)
+DiskGrid::DiskGrid(const Polygon& outline, double spacing_m)
     : outline_(outline), spacing2_(spacing_m * spacing_m), side_(spacing_m / std::sqrt(2.0)) {
     Point low = outline.front();
     Point high = low;
@@ -52,7 +52,6 @@ DiskGrid::DiskGrid(const Polygon& outline, double spacing_m, const std::vector<P
     list_sides_by_row();
     mark_inside();
     for (std::size_t i = 0; i < outline_.size(); ++i) mark_crossed(i);
-    chain_outline_points(outline_points);
 }
 
 Index DiskGrid::cell_of(const Point& p) const {
@@ -112,7 +111,7 @@ void DiskGrid::mark_crossed(std::size_t side) {
     }
 }
 
-void DiskGrid::chain_outline_points(const std::vector<Point>& outline_points) {
+void DiskGrid::add_outline(const std::vector<Point>& outline_points) {
     points_ = outline_points;
     next_.assign(points_.size(), none);
     for (Index i = 0; i < points_.size(); ++i) {

@@ -15,7 +15,10 @@ namespace thalweg::mesh {
 class DiskGrid {
   public:
     /// Throws Error if the spacing is too fine for 32-bit cell numbers.
-    DiskGrid(const Polygon& outline, double spacing_m, const std::vector<Point>& outline_points);
+    DiskGrid(const Polygon& outline, double spacing_m);
+
+    /// Once, before any other point is added.
+    void add_outline(const std::vector<Point>& outline_points);
 
     /// Free of other points within the spacing, and inside the outline.
     bool has_room(const Point& candidate) const;
@@ -43,7 +46,6 @@ class DiskGrid {
     void mark_inside();
     void mark_crossed(std::size_t side);
     void list_sides_by_row();
-    void chain_outline_points(const std::vector<Point>& outline_points);
     bool crowded(Index cell, const Point& candidate) const;
 
     Polygon outline_;

@@ -155,8 +155,9 @@ void fill_gaps(DiskGrid& grid, double spacing, Draws& draws) {
 /// A point one spacing away from all the outline's points is 0.86 spacings away from the outline itself and in no
 /// edge's diametral disc, so what is put inside needs no more points on the outline.
 PointSet fill_outline(const Polygon& outline, double spacing, int extra, std::uint64_t seed) {
+    DiskGrid grid(outline, spacing);
     const std::vector<Point> outline_points = conforming_ring(divide_outline(outline, spacing, extra));
-    DiskGrid grid(outline, spacing, outline_points);
+    grid.add_outline(outline_points);
     Draws draws(seed);
     grow_front(grid, spacing, draws);
     fill_gaps(grid, spacing, draws);
@@ -187,6 +188,13 @@ double expected_spacing(const Polygon& outline, double area, double count) {
     return std::sqrt(low * high);
 }
 
+/// How many points may be put on the outline beyond what the spacing asks: a few to hit a small count; where the count
+/// leaps with the spacing (a strip whose middle fills all at once), in the end enough to cross the leap.
+double largest_extra(int attempt, Index count) {
+    if (attempt <= 4) return 0;
+    return attempt <= 20 ? 4 : std::min(0.25 * count, 1000.0);
+}
+
 void check_count(const Polygon& outline, Index count) {
     if (count < 16 || count > Index{1} << 31) {
         throw Error(fmt::format("a mesh needs 16 to 2147483648 nodes, not {}", count));
@@ -214,7 +222,7 @@ PointSet poisson_disk_count(const Polygon& outline, Index count, std::uint64_t s
     double spacing = expected_spacing(checked, polygon_area(checked), count);
     Random jitter(seed, 0x636f756e);
     int extra = 0;
-    PointSet near_miss;
+    PointSet near_miss{};
     // A large set is met by the first or second spacing. A small one may need a certain number exactly: then what is
     // missing is put on the outline, at a spacing jittered until the two together make it.
     for (int attempt = 0; attempt < 200; ++attempt) {
@@ -223,7 +231,7 @@ PointSet poisson_disk_count(const Polygon& outline, Index count, std::uint64_t s
         if (std::abs(missing) <= 0.02 * count) return set;
         const double ratio = static_cast<double>(set.points.size()) / count;
         if (std::abs(missing) <= 1) near_miss = std::move(set);
-        if (attempt > 4 && missing > 0 && missing <= 4 && extra == 0) {
+        if (extra == 0 && missing > 0 && missing <= largest_extra(attempt, count)) {
             extra = static_cast<int>(missing);
         } else {
             spacing *= std::pow(ratio, attempt < 4 ? 0.5 : 0.2 + 0.6 * jitter.uniform());
