@@ -12,6 +12,8 @@ import types
 import unittest
 from html.parser import HTMLParser
 
+from osgeo import osr
+
 sys.dont_write_bytecode = True
 HERE = os.path.dirname(os.path.realpath(__file__))
 sys.path.insert(0, HERE)
@@ -19,6 +21,8 @@ import mock_study  # noqa: E402
 
 PROGRAM = os.environ.get("THALWEG_FIGURES", os.path.join(HERE, "..", "..", "tools", "figures", "thalweg_figures.py"))
 sys.path.insert(0, os.path.dirname(os.path.realpath(PROGRAM)))
+import maps  # noqa: E402
+import style  # noqa: E402
 import thalweg_figures  # noqa: E402
 
 EXPECTED = {"analyze": ("measure", ("map", "hypsometry", "slope_area", "horton")),
@@ -134,7 +138,9 @@ class Figures(unittest.TestCase):
         for name in ("hypsometry.csv", "slope_area.csv", "slope_area_points.csv"):
             os.remove(self.path("measure", name))
         os.remove(self.path("simulate", "history.csv"))
-        self.succeed("study", self.study)
+        for command in ("fit", "compare"):
+            self.succeed(command, self.path(command))
+        self.succeed("report", self.study)
         self.assertNotRegex(contents(self.path("report.html")).decode().split("<figure")[0], r"\bnan\b|None")
 
     def test_a_missing_raster_is_one_line_and_exit_code_1(self):
@@ -145,7 +151,6 @@ class Figures(unittest.TestCase):
             self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
 
     def test_projected_and_unreferenced_terrains_are_drawn_in_kilometres(self):
-        from osgeo import osr
         utm = osr.SpatialReference()
         utm.ImportFromEPSG(32616)
         for name, crs in (("utm", utm), ("plain", None)):
@@ -153,7 +158,8 @@ class Figures(unittest.TestCase):
             summary = mock_study.write_terrain(folder, "filled.tif", mock_study.hills(50, 70), (700e3, 4050e3), 30.0, crs,
                                                30.0, 40)
             mock_study.write_json(os.path.join(folder, "summary.json"), summary)
-            self.succeed("analyze", folder)
+            image = style.png(maps.single(os.path.join(folder, "filled.tif"), os.path.join(folder, "network.gpkg"))[0], 72)
+            self.assertGreater(len(image), 5000)
 
     def edit(self, parts, change):
         content = json.loads(contents(self.path(*parts)))

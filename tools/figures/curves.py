@@ -138,7 +138,7 @@ def law_label(theta, error):
     return f"fit: θ = {theta:.3f}" + (f" ± {error:.3f}" if error else "")
 
 
-def summary_line(side, extent=None):
+def summary_line(side):
     """The slope–area law of a summary as a curve over its bins (no band); None when it has none."""
     theta, ks = get(side.terrain, "slope_area.theta"), get(side.terrain, "slope_area.ks")
     area = np.asarray(side.bins[0], dtype=float)

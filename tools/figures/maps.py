@@ -18,6 +18,8 @@ ogr.UseExceptions()
 gdal.PushErrorHandler("CPLQuietErrorHandler")
 
 METRES_PER_DEGREE = 111320.0  # on a sphere of the equator's radius: for drawing only, measures come from the ellipsoid
+SUN_ALTITUDE = np.radians(40)
+LEVEL_GROUND = np.sin(SUN_ALTITUDE)  # its brightness
 LONGEST_SIDE = 1300           # cells read at most: more would be thinner than a pixel
 
 
@@ -30,7 +32,6 @@ class Terrain:
     referenced: bool          # has a coordinate system
     crs: str
     scale: float              # file units to map units
-    name: str = ""
 
     @property
     def latitude(self):
@@ -123,7 +124,7 @@ def shading(terrain):
     east, north = east * lift, north * lift
     light = np.zeros_like(z)
     for azimuth, weight in ((225, 0.15), (270, 0.25), (315, 0.4), (360, 0.2)):
-        light += weight * _lambert(east, north, np.radians(azimuth), np.radians(40))
+        light += weight * _lambert(east, north, np.radians(azimuth))
     return np.where(valid, light, 1.0)
 
 
@@ -146,18 +147,17 @@ def _gradient(z, terrain):
     return east / (2 * dx), north / (2 * dy)
 
 
-def _lambert(east, north, azimuth, altitude):
-    facing = -(east * np.sin(azimuth) + north * np.cos(azimuth)) * np.cos(altitude) + np.sin(altitude)
+def _lambert(east, north, azimuth):
+    facing = -(east * np.sin(azimuth) + north * np.cos(azimuth)) * np.cos(SUN_ALTITUDE) + LEVEL_GROUND
     return np.clip(facing / np.sqrt(1 + east**2 + north**2), 0, 1)
 
 
 def picture(terrain, limits, faded=None):
     """The map's pixels (red, green, blue, opacity): tint times shading; `faded` cells step back."""
     tint = style.TINT(Normalize(*limits, clip=True)(np.nan_to_num(terrain.elevation, nan=limits[0])))
-    light = shading(terrain)[..., None]
-    flat = np.sin(np.radians(40))
+    light = np.interp(shading(terrain), [0, LEVEL_GROUND, 1], [0.33, 0.97, 1.13])[..., None]
     pixels = tint.copy()
-    pixels[..., :3] = np.clip(tint[..., :3] * np.clip(0.22 + 0.80 * light / flat, 0, 1.07), 0, 1)
+    pixels[..., :3] = np.clip(tint[..., :3] * light, 0, 1)
     if faded is not None:
         pixels[faded, :3] = 0.30 * pixels[faded, :3] + 0.70 * 0.97
     pixels[..., 3] = np.isfinite(terrain.elevation)

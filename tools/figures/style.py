@@ -34,7 +34,7 @@ TINT = LinearSegmentedColormap.from_list(
     "thalweg", ["#7d9a8c", "#a3b697", "#cccda8", "#ded4b6", "#e2cfb9", "#e6d8cc", "#f1ebe6"])
 
 DPI = 200
-MAP_DPI = 160
+MAP_DPI = 150
 WIDTH = 7.2  # inches: the text width of a two-column journal page
 
 _SETTINGS = {
