@@ -95,14 +95,6 @@ Index count_lakes(const std::vector<Pass>& tree, std::span<const Index> pit, std
 
 }  // namespace
 
-bool lower(const Pass& a, const Pass& b) {
-    if (a.height_m != b.height_m) return a.height_m < b.height_m;
-    const auto key = [](const Pass& pass) {
-        return std::pair(std::min(pass.node, pass.other_node), std::max(pass.node, pass.other_node));
-    };
-    return key(a) < key(b);
-}
-
 LowestPasses::LowestPasses(Index expected) : table_(std::bit_ceil(std::size_t{2} * expected + 16), none) {
     passes_.reserve(expected);
     pairs_.reserve(expected);
@@ -115,22 +107,15 @@ std::size_t LowestPasses::find_slot(std::uint64_t pair) const {
     return slot;
 }
 
-void LowestPasses::offer(Index piece, Index other_piece, const Pass& pass) {
-    const std::uint64_t pair = std::uint64_t{std::min(piece, other_piece)} << 32 | std::max(piece, other_piece);
-    if (pair != last_pair_) {
-        const std::size_t slot = find_slot(pair);
-        last_pair_ = pair;
-        last_ = table_[slot];
-        if (last_ == none) {
-            last_ = table_[slot] = static_cast<Index>(passes_.size());
-            passes_.push_back(pass);
-            pairs_.push_back(pair);
-            if (2 * passes_.size() > table_.size()) grow();
-            return;
-        }
-    }
-    Pass& best = passes_[last_];
-    if (lower(pass, best)) best = pass;
+void LowestPasses::look_up(std::uint64_t pair) {
+    const std::size_t slot = find_slot(pair);
+    last_pair_ = pair;
+    last_ = table_[slot];
+    if (last_ != none) return;
+    last_ = table_[slot] = static_cast<Index>(passes_.size());
+    passes_.push_back(no_pass);
+    pairs_.push_back(pair);
+    if (2 * passes_.size() > table_.size()) grow();
 }
 
 void LowestPasses::grow() {

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "thalweg/core/index.hpp"
@@ -19,17 +22,32 @@ struct Pass {
 };
 
 /// Total order of passes, so that the tree below is unique: height, then the smaller node, then the larger.
-bool lower(const Pass&, const Pass&);
+inline bool lower(const Pass& a, const Pass& b) {
+    if (a.height_m != b.height_m) return a.height_m < b.height_m;
+    const auto key = [](const Pass& pass) {
+        return std::pair(std::min(pass.node, pass.other_node), std::max(pass.node, pass.other_node));
+    };
+    return key(a) < key(b);
+}
+
+/// A pass higher than all others.
+inline constexpr Pass no_pass{std::numeric_limits<double>::infinity(), none, none, none, none};
 
 /// The lowest pass between each pair of pieces (of one or more basins), as they are offered: a hash table with open
 /// addressing.
 class LowestPasses {
   public:
     explicit LowestPasses(Index expected);
-    void offer(Index piece, Index other_piece, const Pass&);
+    void offer(Index piece, Index other_piece, const Pass& pass) {
+        const std::uint64_t pair = std::uint64_t{std::min(piece, other_piece)} << 32 | std::max(piece, other_piece);
+        if (pair != last_pair_) look_up(pair);
+        Pass& best = passes_[last_];
+        if (pass.height_m <= best.height_m && lower(pass, best)) best = pass;
+    }
     std::vector<Pass> take() { return std::move(passes_); }
 
   private:
+    void look_up(std::uint64_t pair);
     std::size_t find_slot(std::uint64_t pair) const;
     void grow();
 

@@ -45,20 +45,32 @@ void lowest_in_row(const Window& w, Index cols, double* height) {
     }
 }
 
+/// The pass out of an inner cell whose height is known: of neighbours as good, the one with the lower number.
+Pass way_out_at(const Terrain<Grid>& terrain, std::span<const Index> basin, Index node, double height) {
+    const Index here = basin[node];
+    for (const Slot slot : {5, 6, 7, 4, 0, 3, 2, 1}) {
+        const Index other = terrain.topology.neighbor(node, slot);
+        const bool leads_out = basin[other] != here && basin[other] != none;
+        if (leads_out && std::max(terrain.elevation_m[node], terrain.elevation_m[other]) == height) {
+            return {height, here, node, basin[other], other};
+        }
+    }
+    return no_pass;
+}
+
 /// Looks closely only at the cells whose pass may be the lowest of their basin.
-void scan_row(const Terrain<Grid>& terrain, std::span<const Index> basin, Index row, std::vector<double>& height,
-              std::vector<Pass>& best) {
-    const Grid& grid = terrain.topology;
-    const Index first = row * grid.cols;
-    std::fill(height.begin(), height.end(), -std::numeric_limits<double>::infinity());
-    const bool inner = row > 0 && row + 1 < grid.rows;
-    if (inner) lowest_in_row(window_of(terrain, basin, row), grid.cols, height.data());
-    for (Index c = 0; c < grid.cols; ++c) {
-        const Index node = first + c;
+void scan_inner_row(const Terrain<Grid>& terrain, std::span<const Index> basin, Index row, std::vector<double>& height,
+                    std::vector<Pass>& best) {
+    const Index cols = terrain.topology.cols;
+    lowest_in_row(window_of(terrain, basin, row), cols, height.data());
+    for (Index c = 1; c + 1 < cols; ++c) {
+        const Index node = row * cols + c;
         if (!is_inside(basin[node])) continue;
-        const bool open = terrain.boundary[node] == Boundary::open;
         Pass& lowest = best[basin[node]];
-        if (open || height[c] <= lowest.height_m) offer_ways_out(terrain, basin, node, lowest);
+        if (height[c] <= lowest.height_m) keep_lower(lowest, way_out_at(terrain, basin, node, height[c]));
+        if (terrain.boundary[node] == Boundary::open) {
+            keep_lower(lowest, {terrain.elevation_m[node], basin[node], node, outside, none});
+        }
     }
 }
 
@@ -85,12 +97,50 @@ void pieces_of_row(std::span<const Index> basin, std::span<const Index> piece, I
     }
 }
 
+/// Offers what leads from a row's cells to the east and to the row below, whose pieces are given (`none`: no such
+/// cell).
+void offer_from_row(const Terrain<Grid>& terrain, std::span<const Index> basin, std::span<const Index> piece, Index row,
+                    const std::vector<Index>& here, const std::vector<Index>& below, LowestPasses& passes) {
+    const Index cols = terrain.topology.cols;
+    const auto offer = [&](Index node, Index own, Index there, Index other) {
+        if (own == there || there == none) return;
+        offer_between(terrain.elevation_m, basin, piece, node, other, passes);
+    };
+    for (Index c = 0; c < cols; ++c) {
+        const Index own = here[c];
+        if (own == none) continue;
+        const Index node = row * cols + c;
+        offer_straight_out(terrain, basin, piece, node, passes);
+        if (c > 0) offer(node, own, below[c - 1], node + cols - 1);
+        offer(node, own, below[c], node + cols);
+        if (c + 1 == cols) continue;
+        offer(node, own, below[c + 1], node + cols + 1);
+        offer(node, own, here[c + 1], node + 1);
+    }
+}
+
 }  // namespace
 
 std::vector<Pass> lowest_pass_of_each_basin(const Terrain<Grid>& terrain, std::span<const Index> basin, Index basins) {
+    const Grid& grid = terrain.topology;
     std::vector<Pass> best(basins, no_pass);
-    std::vector<double> height(terrain.topology.cols);
-    for (Index row = 0; row < terrain.topology.rows; ++row) scan_row(terrain, basin, row, height, best);
+    std::vector<double> height(grid.cols);
+    const auto scan_one_by_one = [&](Index first, Index last) {
+        for (Index node = first; node < last; ++node) {
+            if (is_inside(basin[node])) offer_ways_out(terrain, basin, node, best[basin[node]]);
+        }
+    };
+    for (Index row = 0; row < grid.rows; ++row) {
+        const Index first = row * grid.cols;
+        const Index last = first + grid.cols;
+        if (row == 0 || row + 1 == grid.rows || grid.cols < 3) {
+            scan_one_by_one(first, last);
+            continue;
+        }
+        scan_one_by_one(first, first + 1);
+        scan_inner_row(terrain, basin, row, height, best);
+        scan_one_by_one(last - 1, last);
+    }
     return best;
 }
 
@@ -106,28 +156,15 @@ std::vector<Pass> passes_between_pieces(const Terrain<Grid>& terrain, std::span<
                                         std::span<const Index> piece, Index pieces) {
     const Grid& grid = terrain.topology;
     LowestPasses passes(3 * pieces);
-    std::vector<Index> here(grid.cols), below(grid.cols, none);
+    std::vector<Index> here(grid.cols), below(grid.cols);
     pieces_of_row(basin, piece, 0, here);
     for (Index row = 0; row < grid.rows; ++row) {
-        const Index first = row * grid.cols;
-        const bool last_row = row + 1 == grid.rows;
-        if (last_row) {
-            std::fill(below.begin(), below.end(), none);
+        if (row + 1 < grid.rows) {
+            pieces_of_row(basin, piece, (row + 1) * grid.cols, below);
         } else {
-            pieces_of_row(basin, piece, first + grid.cols, below);
+            std::fill(below.begin(), below.end(), none);
         }
-        const auto offer = [&](Index own, Index c, Index there, Index other) {
-            if (own == there || own == none || there == none) return;
-            offer_between(terrain.elevation_m, basin, piece, first + c, other, passes);
-        };
-        for (Index c = 0; c < grid.cols; ++c) {
-            const Index own = here[c];
-            offer_straight_out(terrain, basin, piece, first + c, passes);
-            if (c + 1 < grid.cols) offer(own, c, here[c + 1], first + c + 1);
-            if (c + 1 < grid.cols) offer(own, c, below[c + 1], first + c + grid.cols + 1);
-            offer(own, c, below[c], first + c + grid.cols);
-            if (c > 0) offer(own, c, below[c - 1], first + c + grid.cols - 1);
-        }
+        offer_from_row(terrain, basin, piece, row, here, below, passes);
         std::swap(here, below);
     }
     return passes.take();

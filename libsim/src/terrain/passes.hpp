@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -12,9 +11,6 @@
 #include "thalweg/core/mesh.hpp"
 
 namespace thalweg::terrain {
-
-/// A pass higher than all others.
-inline constexpr Pass no_pass{std::numeric_limits<double>::infinity(), none, none, none, none};
 
 inline void keep_lower(Pass& best, const Pass& offered) {
     if (lower(offered, best)) best = offered;
