@@ -62,7 +62,7 @@ void step_to_steady_and_check(const T& topology, double n, double talus) {
     for (const std::uint64_t seed : {1, 2, 3}) {
         Landscape landscape = support::rough_start(setting, 1, seed);
         const SimulationResult result =
-            simulate(topology, river, setting, {.step_yr = 1e5, .max_steps = 4000, .convergence = 1e-11}, landscape);
+            simulate(topology, river, setting, {.step_yr = 1e5, .max_steps = 4000, .convergence = 1e-13}, landscape);
         CAPTURE(n, talus, seed, result.steps, result.frozen_receivers, result.mean_rate_m_per_yr);
         CHECK(result.stop_reason == StopReason::converged);
         CHECK(result.mean_rate_m_per_yr < 1e-10);

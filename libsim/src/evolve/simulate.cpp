@@ -18,14 +18,14 @@ constexpr Index patience = 50;
 
 /// Receivers are frozen only when the landscape has nearly come to rest (mean rate under this share of the mean uplift)
 /// and gets no calmer: before that a node that swings to and fro is part of the growth.
-constexpr double calm_share = 0.1;
+constexpr double freezing_share = 0.1;
 
 using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 /// Whether the volume moved per step still falls: under half its lowest value so far at least once in `patience` steps.
-class CalmWatch {
+class Slackening {
   public:
     void observe(double moved_m3) {
         ++steps_;
@@ -33,7 +33,7 @@ class CalmWatch {
         lowest_ = moved_m3;
         steps_ = 0;
     }
-    bool no_calmer() const { return steps_ >= patience; }
+    bool over() const { return steps_ >= patience; }
     void restart() { steps_ = 0; }
 
   private:
@@ -88,18 +88,27 @@ class Simulation {
         return report;
     }
 
-    /// Compares the volume that moved in a step with the volume uplifted in it.
+    /// Compares the volume that moved in a step with the volume uplifted in it. A receiver that changes at the very end
+    /// would set the landscape going again: at rest is what drains as it did, or stays calm for one step more.
     void judge(double moved_m3, double uplifted_m3) {
-        if (moved_m3 <= options_.convergence * uplifted_m3) {
+        const bool calm_before = calm_;
+        calm_ = moved_m3 <= options_.convergence * uplifted_m3;
+        if (calm_ && (calm_before || drains_as_before())) {
             result_.stop_reason = StopReason::converged;
             return;
         }
         exchange_.observe(drainage_.directions);
-        calm_.observe(moved_m3);
-        if (moved_m3 < calm_share * uplifted_m3 && calm_.no_calmer() && exchange_.only_the_same()) {
+        slackening_.observe(moved_m3);
+        if (moved_m3 < freezing_share * uplifted_m3 && slackening_.over() && exchange_.only_the_same()) {
             exchange_.freeze();
-            calm_.restart();
+            slackening_.restart();
         }
+    }
+
+    bool drains_as_before() const {
+        Drainage now;
+        drain_into(topology_, landscape_, setting_, river_.receiver, exchange_.frozen(), now);
+        return now.directions == drainage_.directions;
     }
 
     StepRecord record(const StepReport& report, double seconds) const {
@@ -139,7 +148,8 @@ class Simulation {
     SlopeSolver solve_;
     Drainage drainage_;
     ExchangeWatch exchange_;
-    CalmWatch calm_;
+    Slackening slackening_;
+    bool calm_ = false;
     SimulationResult result_;
 };
 
