@@ -1,94 +1,153 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/terrain/flats.hpp"
 
+#include <bit>
 #include <cmath>
+#include <limits>
 
 #include "terrain/check_sizes.hpp"
+#include "terrain/downhill.hpp"
+#include "thalweg/core/parallel.hpp"
 
 namespace thalweg::terrain {
 namespace {
 
-/// What the two gradients need of a flat terrain. A cell is stuck if it must flow but has no lower neighbour. Two stuck
-/// cells side by side are always of one height (the higher one would flow), so heights are read only at the rims.
+/// What has been learnt of a cell. A cell is stuck if it must flow but has no lower neighbour; two stuck cells side by
+/// side are always of one height (the higher one would flow).
+enum State : std::uint8_t { stuck = 1, has_higher = 2, collected = 4, reached_from_exit = 8, reached_from_rim = 16 };
+
 struct Flats {
-    const Grid& grid;
-    std::span<const double> elevation_m;
-    std::vector<std::uint8_t> stuck;  // per cell
-    std::vector<Index> cells;         // the stuck ones, ascending
+    Downhill neighbor;
+    std::vector<std::uint8_t> state;
+    std::vector<std::uint8_t> level;    // bit 1 << slot for each neighbour of the same height
+    std::vector<std::int32_t> surface;  // 2·(steps from a way out) − (steps from higher terrain)
 };
+
+template <class Visit>
+void visit_level_neighbors(const Flats& flats, Index cell, Visit visit) {
+    for (unsigned bits = flats.level[cell]; bits != 0; bits &= bits - 1) {
+        const Slot slot = static_cast<Slot>(std::countr_zero(bits));
+        visit(flats.neighbor(cell, slot), slot);
+    }
+}
+
+/// Level bits and rim flags of an inner row's inner columns. Sums of selects, so that the loop vectorises.
+void compare_row(const double* here, Index cols, std::uint8_t* level, std::uint8_t* state) {
+    const double* above = here - cols;
+    const double* below = here + cols;
+    for (Index c = 1; c + 1 < cols; ++c) {
+        const double height = here[c];
+        double bits = 0;
+        double higher = 0;
+        const auto offer = [&](double neighbor, double bit) {
+            bits += neighbor == height ? bit : 0;
+            higher = neighbor > height ? double{has_higher} : higher;
+        };
+        offer(here[c + 1], 1);
+        offer(below[c + 1], 2);
+        offer(below[c], 4);
+        offer(below[c - 1], 8);
+        offer(here[c - 1], 16);
+        offer(above[c - 1], 32);
+        offer(above[c], 64);
+        offer(above[c + 1], 128);
+        level[c] = static_cast<std::uint8_t>(static_cast<int>(bits));
+        state[c] = static_cast<std::uint8_t>(static_cast<int>(higher));
+    }
+}
+
+void compare_cell(const Grid& grid, std::span<const double> elevation_m, Index cell, Flats& flats) {
+    grid.neighbors(cell, [&](Index other, double, Slot slot) {
+        if (elevation_m[other] == elevation_m[cell]) flats.level[cell] |= 1 << slot;
+        if (elevation_m[other] > elevation_m[cell]) flats.state[cell] |= has_higher;
+    });
+}
+
+void compare_rows(const Grid& grid, std::span<const double> elevation_m, Index first_row, Index last_row,
+                  Flats& flats) {
+    for (Index row = first_row; row < last_row; ++row) {
+        const Index first = row * grid.cols;
+        const Index last = first + grid.cols;
+        if (row == 0 || row + 1 == grid.rows || grid.cols < 3) {
+            for (Index cell = first; cell < last; ++cell) compare_cell(grid, elevation_m, cell, flats);
+            continue;
+        }
+        compare_row(elevation_m.data() + first, grid.cols, flats.level.data() + first, flats.state.data() + first);
+        compare_cell(grid, elevation_m, first, flats);
+        compare_cell(grid, elevation_m, last - 1, flats);
+    }
+}
 
 Flats find_flats(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary,
                  const FlowDirections& directions) {
-    Flats flats{grid, elevation_m, std::vector<std::uint8_t>(grid.size(), 0), {}};
-    for (Index node = 0; node < grid.size(); ++node) {
-        const bool stuck =
-            directions[node] == no_flow && boundary[node] == Boundary::interior && !std::isnan(elevation_m[node]);
-        flats.stuck[node] = stuck;
-        if (stuck) flats.cells.push_back(node);
-    }
+    Flats flats{Downhill(grid), std::vector<std::uint8_t>(grid.size(), 0), std::vector<std::uint8_t>(grid.size(), 0),
+                std::vector<std::int32_t>(grid.size(), 0)};
+    const auto compare = [&](Index first_row, Index last_row) {
+        compare_rows(grid, elevation_m, first_row, last_row, flats);
+        for (Index cell = first_row * grid.cols; cell < last_row * grid.cols; ++cell) {
+            const bool must_flow = boundary[cell] == Boundary::interior && !std::isnan(elevation_m[cell]);
+            flats.state[cell] |= directions[cell] == no_flow && must_flow ? stuck : 0;
+        }
+    };
+    parallel_for(0, grid.rows, compare, std::max<Index>(1, 16384 / grid.cols));
     return flats;
 }
 
-bool has_higher_neighbor(const Flats& flats, Index cell) {
-    bool found = false;
-    flats.grid.neighbors(
-        cell, [&](Index other, double, Slot) { found = found || flats.elevation_m[other] > flats.elevation_m[cell]; });
-    return found;
-}
+/// One flat: its stuck cells, those beside a way out (a cell of the same height that is not stuck: it flows lower, or
+/// the water leaves there), and those beside higher terrain. Kept from flat to flat for its memory.
+struct Flat {
+    std::vector<Index> cells, at_exit, at_rim;
+};
 
-/// A neighbour of the same height that is not stuck: it flows lower, or the water leaves there.
-bool is_way_out(const Flats& flats, Index cell, Index neighbor) {
-    return !flats.stuck[neighbor] && flats.elevation_m[neighbor] == flats.elevation_m[cell];
-}
-
-bool has_way_out(const Flats& flats, Index cell) {
-    bool found = false;
-    flats.grid.neighbors(cell, [&](Index other, double, Slot) { found = found || is_way_out(flats, cell, other); });
-    return found;
-}
-
-/// Steps from the nearest seed (1 there) through stuck cells, breadth first; 0 where no seed is within reach.
-std::vector<std::int32_t> steps_from(const Flats& flats, bool (*is_seed)(const Flats&, Index)) {
-    std::vector<std::int32_t> steps(flats.grid.size(), 0);
-    std::vector<Index> queue;
-    queue.reserve(flats.cells.size());
-    const auto reach = [&](Index cell, std::int32_t at) {
-        steps[cell] = at;
-        queue.push_back(cell);
-    };
-    for (const Index cell : flats.cells) {
-        if (is_seed(flats, cell)) reach(cell, 1);
-    }
-    for (std::size_t next = 0; next < queue.size(); ++next) {
-        const Index cell = queue[next];
-        flats.grid.neighbors(cell, [&](Index other, double, Slot) {
-            if (flats.stuck[other] && steps[other] == 0) reach(other, steps[cell] + 1);
+void collect(Flats& flats, Index start, Flat& flat) {
+    flat.cells.assign(1, start);
+    flat.at_exit.clear();
+    flat.at_rim.clear();
+    flats.state[start] |= collected;
+    for (std::size_t next = 0; next < flat.cells.size(); ++next) {
+        const Index cell = flat.cells[next];
+        bool at_exit = false;
+        visit_level_neighbors(flats, cell, [&](Index other, Slot) {
+            at_exit = at_exit || !(flats.state[other] & stuck);
+            if ((flats.state[other] & (stuck | collected)) != stuck) return;
+            flats.state[other] |= collected;
+            flat.cells.push_back(other);
         });
+        if (at_exit) flat.at_exit.push_back(cell);
+        if (flats.state[cell] & has_higher) flat.at_rim.push_back(cell);
     }
-    return steps;
 }
 
-/// The neighbour to flow to: a way out if there is one beside the cell, else the lowest on the surface
-/// 2·(steps from a way out) − (steps from higher terrain). The first term falls by 2 towards the way out and the second
-/// changes by at most 1 from cell to cell, so there always is a lower one. Ties: straight before diagonal, then the
-/// lower slot.
-Slot slot_in_flat(const Flats& flats, const std::vector<std::int32_t>& to_exit,
-                  const std::vector<std::int32_t>& from_higher, Index cell) {
+/// Adds `weight` times the number of steps from the cells in `queue` (1 there) to the surface, breadth first.
+void add_steps(Flats& flats, std::vector<Index>& queue, std::uint8_t mark, std::int32_t weight) {
+    for (const Index cell : queue) flats.state[cell] |= mark;
+    std::size_t next = 0;
+    for (std::int32_t step = 1; next < queue.size(); ++step) {
+        for (const std::size_t end = queue.size(); next < end; ++next) {
+            const Index cell = queue[next];
+            flats.surface[cell] += weight * step;
+            visit_level_neighbors(flats, cell, [&](Index other, Slot) {
+                if ((flats.state[other] & (stuck | mark)) != stuck) return;
+                flats.state[other] |= mark;
+                queue.push_back(other);
+            });
+        }
+    }
+}
+
+/// The neighbour to flow to: a way out if there is one beside the cell, else the lowest on the surface. Its first term
+/// falls by 2 towards the way out and the second changes by at most 1 from cell to cell, so there always is a lower
+/// one. Ties: straight before diagonal, then the lower slot.
+Slot slot_in_flat(const Flats& flats, Index cell) {
+    constexpr std::int32_t below_all = std::numeric_limits<std::int32_t>::min();
     Slot best = no_flow;
-    std::int32_t lowest = 2 * to_exit[cell] - from_higher[cell];
-    const auto offer = [&](std::int32_t surface, Slot slot) {
+    std::int32_t lowest = flats.surface[cell];
+    visit_level_neighbors(flats, cell, [&](Index other, Slot slot) {
+        const std::int32_t surface = flats.state[other] & stuck ? flats.surface[other] : below_all;
         const bool straighter = best != no_flow && surface == lowest && best % 2 == 1 && slot % 2 == 0;
         if (surface >= lowest && !straighter) return;
         lowest = surface;
         best = slot;
-    };
-    constexpr std::int32_t below_all = std::numeric_limits<std::int32_t>::min();
-    flats.grid.neighbors(cell, [&](Index other, double, Slot slot) {
-        if (is_way_out(flats, cell, other)) {
-            offer(below_all, slot);
-        } else if (flats.stuck[other]) {
-            offer(2 * to_exit[other] - from_higher[other], slot);
-        }
     });
     return best;
 }
@@ -99,14 +158,17 @@ Index resolve_flats(const Grid& grid, std::span<const double> elevation_m, std::
                     FlowDirections& directions) {
     check_sizes(grid.size(), elevation_m.size(), boundary.size());
     check_sizes(grid.size(), directions.size(), directions.size());
-    const Flats flats = find_flats(grid, elevation_m, boundary, directions);
-    const std::vector<std::int32_t> to_exit = steps_from(flats, has_way_out);
-    const std::vector<std::int32_t> from_higher = steps_from(flats, has_higher_neighbor);
+    Flats flats = find_flats(grid, elevation_m, boundary, directions);
+    Flat flat;
     Index resolved = 0;
-    for (const Index cell : flats.cells) {
-        if (to_exit[cell] == 0) continue;
-        directions[cell] = slot_in_flat(flats, to_exit, from_higher, cell);
-        ++resolved;
+    for (Index start = 0; start < grid.size(); ++start) {
+        if ((flats.state[start] & (stuck | collected)) != stuck) continue;
+        collect(flats, start, flat);
+        if (flat.at_exit.empty()) continue;
+        add_steps(flats, flat.at_exit, reached_from_exit, 2);
+        add_steps(flats, flat.at_rim, reached_from_rim, -1);
+        for (const Index cell : flat.cells) directions[cell] = slot_in_flat(flats, cell);
+        resolved += static_cast<Index>(flat.cells.size());
     }
     return resolved;
 }
