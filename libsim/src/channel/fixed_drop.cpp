@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 
 #include "thalweg/channel/slope_area.hpp"
@@ -40,24 +41,24 @@ std::vector<Index> main_donors(const Profile& profile) {
     return donor;
 }
 
-/// Cuts one reach (steps between two jumps of the area) into pieces of equal drop, at least `drop_m` each, or keeps it
-/// whole if it falls less. No remainder is left over, and the cuts do not depend on where the steep steps are, so
-/// neither steep nor gentle stretches are preferred.
+/// Cuts one reach (steps between two jumps of the area) into pieces that fall `drop_m` or more, or keeps it whole if it
+/// falls less; what is left over at the end goes to the last piece. So every step of a reach is in a piece, steep
+/// or not, and as pieces count by their length, no kind of stretch is preferred. (Cutting at the node nearest to whole
+/// multiples of the drop was tried: with vertical noise its shorter pieces made k·A0^m three to five times worse.)
 void cut_reach(const Profile& profile, std::span<const Index> reach, const SegmentOptions& options,
                std::vector<SlopeAreaPoint>& points) {
     double total = 0;
     for (const Index node : reach) total += profile.drop(node);
     if (!(total > 0) || total < options.smallest_drop_m) return;
-    const double piece = total / std::max(1.0, std::floor(total / options.drop_m));
+    const double enough = options.drop_m * (1 - 1e-9);  // a piece is not missed by rounding
     double fallen = 0, start = 0, length = 0, log_area = 0;
     for (std::size_t i = 0; i < reach.size(); ++i) {
         const double step = profile.graph.length[reach[i]];
         fallen += profile.drop(reach[i]);
         length += step;
         log_area += step * std::log(profile.area[reach[i]]);
-        const double target = piece * (std::floor(start / piece + 1e-9) + 1);
         const bool last = i + 1 == reach.size();
-        if (!last && (fallen < target * (1 - 1e-12) || total - fallen < piece * (1 - 1e-9))) continue;
+        if (!last && (fallen - start < enough || total - fallen < enough)) continue;
         points.push_back({std::exp(log_area / length), (fallen - start) / length, length});
         start = fallen;
         length = log_area = 0;

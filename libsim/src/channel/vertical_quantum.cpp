@@ -31,20 +31,27 @@ std::vector<double> distinct(const std::vector<double>& sorted, double tolerance
     return kept;
 }
 
-/// Greatest common divisor of the gaps between heights (Euclid), 0 once it falls under `smallest`.
-double common_divisor(const std::vector<double>& heights, double tolerance, double smallest) {
-    double divisor = 0;
-    for (std::size_t i = 1; i < heights.size(); ++i) {
-        double a = heights[i] - heights[i - 1];
-        while (divisor > 0 && a > tolerance) {
-            const double rest = std::abs(std::remainder(divisor, a));
-            divisor = a;
-            a = rest;
+/// Greatest common divisor of the gaps between heights, each known to `rounding` (Euclid's algorithm, small gaps first
+/// so that errors stay small, on a running mean of the divisor). 0 once it falls under `smallest`.
+double common_divisor(const std::vector<double>& heights, double rounding, double smallest) {
+    std::vector<double> gaps;
+    for (std::size_t i = 1; i < heights.size(); ++i) gaps.push_back(heights[i] - heights[i - 1]);
+    std::ranges::sort(gaps);
+    double divisor = gaps.front(), distance = 0, steps = 0;
+    for (double gap : gaps) {
+        double rest = std::abs(std::remainder(gap, divisor));
+        while (rest > 2 * rounding * (1 + gap / divisor)) {
+            gap = divisor;
+            divisor = rest;
+            distance = steps = 0;
+            if (divisor < smallest) return 0;
+            rest = std::abs(std::remainder(gap, divisor));
         }
-        if (divisor == 0) divisor = a;
-        if (divisor < smallest) return 0;
+        distance += gap;
+        steps += std::round(gap / divisor);
+        divisor = distance / steps;
     }
-    return divisor;
+    return divisor < smallest - rounding ? 0 : divisor;
 }
 
 /// Sharpens a divisor known to rounding by counting it out over longer and longer distances.
@@ -69,7 +76,8 @@ double vertical_quantum(std::span<const double> elevation_m, double smallest_m) 
     // A quantised DEM repeats its heights; then those seen once are what is foreign in it.
     if (heights.size() < 2 || 2 * heights.size() < all.size()) heights = std::move(all);
     if (heights.size() < 2) return 0;
-    double quantum = common_divisor(heights, std::max(4 * rounding, smallest_m / 4), smallest_m);
+    const double least = std::max(smallest_m, 8 * rounding);  // finer, and rounding alone would look like it
+    double quantum = common_divisor(heights, rounding, least);
     if (quantum == 0) return 0;
     quantum = sharpened(heights, quantum);
     const auto fits = [&](double height) {

@@ -41,7 +41,16 @@ struct SegmentOptions {
 
 /// Slopes over segments of fixed drop along carved profiles, cut where a tributary makes the area jump (SCIENCE: steps
 /// of the DEM's vertical quantum make single-cell slopes useless). Each river is walked up from its mouth along the
-/// donor of largest area. `used`: 1 where a node may enter (empty: all).
+/// donor of largest area; a node stands for the step to its receiver. `used`: 1 where a node may enter (empty: all).
+///
+/// A reach between two jumps is cut into pieces that fall at least `drop_m`, or is one piece if it falls less; only
+/// reaches that fall less than `smallest_drop_m`, or not at all, are left out. A point has its piece's drop over its
+/// length, the geometric mean area along it, and its length as weight. So the lengths and drops of all points add up to
+/// those of the reaches, and steep stretches are not preferred. Linear.
+///
+/// Measured on steady rasters of 160² cells at 90 m (tests/channel/slope_area.cpp, m = 0.35 and 0.5, n = 1 and 1.5):
+/// heights as they are: m within 0.0005 and k·A0^m within 0.2 %; rounded to 1 m at a relief of 800 and of 100 m: within
+/// 0.01 and 2 %.
 std::vector<SlopeAreaPoint> fixed_drop_segments(const terrain::FlowGraph&, std::span<const double> drainage_area_m2,
                                                 std::span<const double> carved_elevation_m,
                                                 std::span<const std::uint8_t> used, const SegmentOptions&);

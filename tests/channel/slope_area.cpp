@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/channel/slope_area.hpp"
+
+#include <algorithm>
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "support/flow_trees.hpp"
+#include "support/steady_landscape.hpp"
+
+using namespace thalweg;
+using namespace thalweg::channel;
+using support::graph_of;
+using terrain::FlowGraph;
+
+namespace {
+
+/// A single river: node i flows to i − 1, with the given falls (m) and areas (m²) of its steps, 10 m long each.
+struct River {
+    FlowGraph graph;
+    std::vector<double> area{1e9}, height{0};
+    River(const std::vector<double>& falls, const std::vector<double>& areas) {
+        std::vector<Index> receiver{none};
+        for (std::size_t i = 0; i < falls.size(); ++i) {
+            receiver.push_back(static_cast<Index>(i));
+            height.push_back(height.back() + falls[i]);
+            area.push_back(areas[i]);
+        }
+        graph = graph_of(receiver, 10);
+    }
+    std::vector<SlopeAreaPoint> segments(const SegmentOptions& options) const {
+        return fixed_drop_segments(graph, area, height, {}, options);
+    }
+};
+
+/// k·A0^m relative to the truth and m less the truth (n = 1), from a DEM of a steady landscape.
+struct Bias {
+    double m, k_at_reference;
+};
+
+Bias dem_bias(const Grid& grid, const std::vector<double>& height, const support::SteadyLaw& law) {
+    const support::RoutedDem dem = support::routed_dem(grid, height);
+    const double quantum = vertical_quantum(height);
+    const double relief = *std::ranges::max_element(height) - *std::ranges::min_element(height);
+    const auto points = fixed_drop_segments(
+        dem.graph, dem.area_m2, dem.carved_m, {},
+        {.drop_m = std::max(0.025 * relief, 3 * quantum), .smallest_drop_m = 3 * quantum, .smallest_area_m2 = 2e5});
+    const SlopeArea fit = fit_slope_area(slope_area_bins(points));
+    const double slope = fit.ks.value * std::pow(law.reference_area_m2, -fit.theta.value);
+    return {fit.theta.value - law.theta, law.slope_at_reference / slope - 1};
+}
+
+std::vector<double> rounded(std::vector<double> height, double quantum) {
+    for (double& each : height) each = quantum * std::round(each / quantum);
+    return height;
+}
+
+}  // namespace
+
+TEST_CASE("An even river is cut into pieces of the asked drop, with their slope and area") {
+    const River river(std::vector<double>(12, 1.0), std::vector<double>(12, 5e5));
+    const auto points = river.segments({.drop_m = 3});
+    REQUIRE(points.size() == 4);
+    for (const SlopeAreaPoint& point : points) {
+        CHECK(point.slope == Approx(0.1));
+        CHECK(point.area_m2 == Approx(5e5));
+        CHECK(point.weight == 30);
+    }
+}
+
+TEST_CASE("What is left over goes to the last piece, and a reach too low for one piece is kept whole") {
+    const std::vector<double> same(11, 5e5);
+    const auto eleven = River(std::vector<double>(11, 1.0), same).segments({.drop_m = 3});
+    REQUIRE(eleven.size() ==
+            3);  // 11 = 3 pieces of 3⅔, cut at the first node beyond: 4 + 7 → 4, then 4 leave 3: no cut
+    CHECK(eleven[0].weight + eleven[1].weight + eleven.back().weight == Approx(110));
+    const auto whole = River({0.2, 0.3, 0.1}, {5e5, 5e5, 5e5}).segments({.drop_m = 3});
+    REQUIRE(whole.size() == 1);
+    CHECK(whole[0].slope == Approx(0.02));
+    CHECK(River({0.2, 0.3, 0.1}, {5e5, 5e5, 5e5}).segments({.drop_m = 3, .smallest_drop_m = 1}).empty());
+    CHECK(River({0, 0, 0}, {5e5, 5e5, 5e5}).segments({.drop_m = 3}).empty());
+}
+
+TEST_CASE("No segment crosses a jump of the area, and a gentle change is averaged geometrically") {
+    const auto points = River({1, 1, 1, 1, 1, 1}, {9e5, 9e5, 6e5, 2e5, 2e5, 2e5}).segments({.drop_m = 100});
+    REQUIRE(points.size() == 2);  // 9/6 = 1.5 is no jump, 6/2 = 3 is one
+    CHECK(points[0].area_m2 == Approx(std::cbrt(9e5 * 9e5 * 6e5)));
+    CHECK(points[0].weight == 30);
+    CHECK(points[1].area_m2 == Approx(2e5));
+    const auto at_limit = River({1, 1}, {1.6e5, 1e5}).segments({.drop_m = 100});
+    CHECK(at_limit.size() == 1);
+    CHECK(River({1, 1}, {1.61e5, 1e5}).segments({.drop_m = 100}).size() == 2);
+}
+
+TEST_CASE("Channels begin at the smallest area, and only nodes in use enter") {
+    const River river({1, 1, 1, 1}, {4e5, 4e5, 3e5, 2e5});
+    const auto large = river.segments({.drop_m = 100, .smallest_area_m2 = 2.5e5});
+    REQUIRE(large.size() == 1);
+    CHECK(large[0].weight == 30);
+    const std::vector<std::uint8_t> used{1, 0, 1, 1, 0};
+    const auto middle = fixed_drop_segments(river.graph, river.area, river.height, used, {.drop_m = 100});
+    REQUIRE(middle.size() == 1);
+    CHECK(middle[0].weight == 20);
+    CHECK(middle[0].area_m2 == Approx(std::sqrt(4e5 * 3e5)));
+}
+
+TEST_CASE("At a junction the river goes on along the larger donor and the tributary is a river of its own") {
+    // 0 ← 1 ← {2, 3}, 2 ← 4; the donor 3 has more area than 2.
+    const FlowGraph graph = graph_of({none, 0, 1, 1, 2}, 10);
+    const std::vector<double> area{10e5, 9e5, 3e5, 6e5, 3e5};
+    const std::vector<double> height{0, 1, 3, 4, 6};
+    const auto points = fixed_drop_segments(graph, area, height, {}, {.drop_m = 100});
+    REQUIRE(points.size() == 2);
+    CHECK(points[0].area_m2 == Approx(std::sqrt(9e5 * 6e5)));
+    CHECK(points[0].slope == Approx(4 / 20.0));
+    CHECK(points[1].area_m2 == Approx(3e5));
+    CHECK(points[1].slope == Approx(5 / 20.0));
+}
+
+TEST_CASE("Lengths and drops of the segments add up to those of all channels: nothing steep is preferred") {
+    const Grid grid = plane_grid(60, 60, 90, 90);
+    std::vector<double> height = support::steady_raster(grid, {.slope_at_reference = 0.02}, 3);
+    for (Index node = 0; node < grid.size(); ++node) height[node] += 2 * uniform_at(8, 0, node);
+    const support::RoutedDem dem = support::routed_dem(grid, height);
+    double length = 0, drop = 0;
+    for (Index node = 0; node < grid.size(); ++node) {
+        const Index receiver = dem.graph.receiver[node];
+        if (receiver == none || dem.area_m2[node] < 1e5) continue;
+        length += dem.graph.length[node];
+        drop += dem.carved_m[node] - dem.carved_m[receiver];
+    }
+    for (const double piece : {0.5, 3.0, 20.0}) {
+        double measured_length = 0, measured_drop = 0;
+        for (const SlopeAreaPoint& point : fixed_drop_segments(dem.graph, dem.area_m2, dem.carved_m, {},
+                                                               {.drop_m = piece, .smallest_area_m2 = 1e5})) {
+            measured_length += point.weight;
+            measured_drop += point.weight * point.slope;
+        }
+        CHECK(measured_drop == Approx(drop).epsilon(1e-9));
+        CHECK(measured_length <= length * (1 + 1e-12));
+        CHECK(measured_length > 0.95 * length);  // only reaches without any fall are missing
+    }
+}
+
+TEST_CASE("A river of steep and gentle steps has its mean slope, however it is cut") {
+    std::vector<double> falls;
+    for (Index i = 0; i < 20000; ++i) falls.push_back(uniform_at(4, 0, i) < 0.2 ? 4.0 : 0.25);  // mean 1 m per 10 m
+    const River river(falls, std::vector<double>(falls.size(), 5e5));
+    for (const double drop : {10.0, 30.0}) {
+        const auto bins = slope_area_bins(river.segments({.drop_m = drop}));
+        REQUIRE(bins.size() == 1);
+        // The mean of ln lies below ln of the mean by half the variance of a piece: cv² = 2.25/4 per metre of drop.
+        const double half_variance = 0.5 * 2.25 / drop;
+        CHECK(std::log(bins[0].slope / 0.1) == Approx(-half_variance).margin(0.05));
+    }
+}
+
+TEST_CASE("Nodes' own slopes leave out what has none") {
+    const FlowGraph graph = graph_of({none, 0, 1, 2, 3}, 10);
+    const std::vector<double> area{5, 4, 3, 2, 1};
+    const auto points = node_slopes(graph, area, std::vector<double>{0, 1, 3, 3, 2});
+    REQUIRE(points.size() == 2);
+    CHECK(points[0].area_m2 == 4);
+    CHECK(points[0].slope == Approx(0.1));
+    CHECK(points[1].slope == Approx(0.2));
+    CHECK(points[1].weight == 1);
+    const auto one =
+        node_slopes(graph, area, std::vector<double>{0, 1, 3, 3, 2}, std::vector<std::uint8_t>{1, 0, 1, 1, 1});
+    CHECK(one.size() == 1);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    CHECK(node_slopes(graph, area, std::vector<double>{0, nan, 3, 3, 2}).empty());
+}
+
+TEST_CASE("Bins hold geometric means and their standard errors") {
+    // ln S = 0, 2 in one bin: mean 1, sd √2, error 1.
+    const std::vector<SlopeAreaPoint> points{{1.00e5, 1}, {1.21e5, std::exp(2.0)}, {3e6, 0.5}};
+    const auto bins = slope_area_bins(points);
+    REQUIRE(bins.size() == 2);
+    CHECK(bins[0].area_m2 == Approx(1.1e5));
+    CHECK(bins[0].slope == Approx(std::exp(1.0)));
+    CHECK(bins[0].slope_se == Approx(std::exp(1.0)));
+    CHECK(bins[0].count == 2);
+    CHECK(bins[1].slope == Approx(0.5));
+    CHECK(std::isnan(bins[1].slope_se));
+    CHECK(slope_area_bins({}).empty());
+}
+
+TEST_CASE("Bins are a tenth of a decade wide, from each power of ten on") {
+    const std::vector<SlopeAreaPoint> points{{0.999e5, 1}, {1.0e5, 1},  {1.25e5, 1},
+                                             {1.26e5, 1},  {1.58e5, 1}, {1.59e5, 1}};
+    const auto bins = slope_area_bins(points);
+    REQUIRE(bins.size() == 4);
+    CHECK(bins[0].count == 1);
+    CHECK(bins[1].count == 2);
+    CHECK(bins[2].count == 2);
+    CHECK(slope_area_bins(points, 1).size() == 2);
+}
+
+TEST_CASE("Weights of points count like lengths in the mean and in its error") {
+    const auto bins = slope_area_bins(std::vector<SlopeAreaPoint>{{1e5, 1, 3}, {1e5, std::exp(1.0), 1}});
+    REQUIRE(bins.size() == 1);
+    CHECK(bins[0].slope == Approx(std::exp(0.25)));
+    // Σ(w·(x − x̄))² = (3·¼)² + (1·¾)² = 1.125; times 2/1, root, over Σw = 4.
+    CHECK(bins[0].slope_se / bins[0].slope == Approx(std::sqrt(2.25) / 4));
+    const auto equal = slope_area_bins(std::vector<SlopeAreaPoint>{{1e5, 1, 7}, {1e5, 2, 7}, {1e5, 5, 7}});
+    const auto unit = slope_area_bins(std::vector<SlopeAreaPoint>{{1e5, 1}, {1e5, 2}, {1e5, 5}});
+    CHECK(equal[0].slope_se == Approx(unit[0].slope_se));
+}
+
+TEST_CASE("The steepness law is found again exactly on exact bins") {
+    std::vector<SlopeAreaBin> bins;
+    for (int i = 0; i < 12; ++i) {
+        const double area = 1e5 * std::pow(10, 0.2 * i);
+        bins.push_back({area, 90 * std::pow(area, -0.47), 0.01, 5});
+    }
+    const SlopeArea fit = fit_slope_area(bins);
+    CHECK(fit.theta.value == Approx(0.47).epsilon(1e-10));
+    CHECK(fit.ks.value == Approx(90).epsilon(1e-9));
+    CHECK(fit.r2 == Approx(1));
+    CHECK(fit.theta.interval95[0] <= fit.theta.interval95[1]);
+    CHECK(fit.ks.interval95[0] > 0);
+    const SlopeArea two = fit_slope_area({bins[0], bins[1]});
+    CHECK(two.theta.value == Approx(0.47));
+    CHECK(std::isnan(two.theta.standard_error));
+    CHECK(std::isnan(fit_slope_area({}).theta.value));
+}
+
+TEST_CASE("A steady landscape written as a DEM gives back m and k as measured heights allow") {
+    const Grid grid = plane_grid(160, 160, 90, 90);
+    for (const double n : {1.0, 1.5}) {
+        for (const double m : {0.35, 0.5}) {
+            for (const double slope_at_reference : {0.08, 0.01}) {  // relief about 800 and 100 m
+                const support::SteadyLaw law{.theta = m / n, .slope_at_reference = slope_at_reference};
+                const auto height = support::steady_raster(grid, law, 1);
+                const Bias exact = dem_bias(grid, height, law);
+                CHECK(std::abs(n * exact.m) < 0.0005);
+                CHECK(std::abs(n * exact.k_at_reference) < 0.002);
+                const Bias whole_metres = dem_bias(grid, rounded(height, 1), law);
+                CHECK(std::abs(n * whole_metres.m) < 0.01);
+                CHECK(std::abs(n * whole_metres.k_at_reference) < 0.02);
+            }
+        }
+    }
+}
+
+TEST_CASE("Vertical noise of a metre or two leaves m within 0.02 and k within 10 % at 800 m of relief") {
+    const Grid grid = plane_grid(160, 160, 90, 90);
+    const support::SteadyLaw law;
+    const auto steady = support::steady_raster(grid, law, 2);
+    for (const double sd : {1.0, 2.0}) {
+        auto height = steady;
+        Random random(31, 0);
+        for (double& each : height) each += sd * random.normal();
+        for (const double quantum : {0.0, 1.0}) {
+            const Bias bias = dem_bias(grid, quantum > 0 ? rounded(height, quantum) : height, law);
+            CHECK(std::abs(bias.m) < 0.02);
+            CHECK(std::abs(bias.k_at_reference) < 0.10);
+        }
+    }
+}
