@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/terrain/flats.hpp"
 
+#include <algorithm>
 #include <bit>
-#include <cmath>
 #include <limits>
 
 #include "terrain/check_sizes.hpp"
@@ -78,59 +78,97 @@ void compare_rows(const Grid& grid, std::span<const double> elevation_m, Index f
     }
 }
 
+/// Adds the stuck flag to `count` cells.
+void mark_stuck(const double* elevation_m, const Boundary* boundary, const Slot* directions, Index count,
+                std::uint8_t* state) {
+    for (Index i = 0; i < count; ++i) {
+        const bool has_data = elevation_m[i] == elevation_m[i];
+        const bool is_stuck = (directions[i] == no_flow) & (boundary[i] == Boundary::interior) & has_data;
+        state[i] = static_cast<std::uint8_t>(state[i] | (is_stuck ? stuck : 0));
+    }
+}
+
 Flats find_flats(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary,
                  const FlowDirections& directions) {
     Flats flats{Downhill(grid), std::vector<std::uint8_t>(grid.size(), 0), std::vector<std::uint8_t>(grid.size(), 0),
                 std::vector<std::int32_t>(grid.size(), 0)};
     const auto compare = [&](Index first_row, Index last_row) {
         compare_rows(grid, elevation_m, first_row, last_row, flats);
-        for (Index cell = first_row * grid.cols; cell < last_row * grid.cols; ++cell) {
-            const bool must_flow = boundary[cell] == Boundary::interior && !std::isnan(elevation_m[cell]);
-            flats.state[cell] |= directions[cell] == no_flow && must_flow ? stuck : 0;
-        }
+        const std::size_t first = std::size_t{first_row} * grid.cols;
+        mark_stuck(elevation_m.data() + first, boundary.data() + first, directions.data() + first,
+                   (last_row - first_row) * grid.cols, flats.state.data() + first);
     };
     parallel_for(0, grid.rows, compare, std::max<Index>(1, 16384 / grid.cols));
     return flats;
 }
 
-/// One flat: its stuck cells, those beside a way out (a cell of the same height that is not stuck: it flows lower, or
-/// the water leaves there), and those beside higher terrain. Kept from flat to flat for its memory.
-struct Flat {
-    std::vector<Index> cells, at_exit, at_rim;
+/// Cells in the order in which they were reached. The memory is kept from flat to flat. A cell may be written and not
+/// kept, so that the inner loops need no branch that nobody can predict: there is always room for eight more.
+class Queue {
+  public:
+    void clear() { size_ = 0; }
+    bool empty() const { return size_ == 0; }
+    std::size_t size() const { return size_; }
+    Index operator[](std::size_t at) const { return cells_[at]; }
+    void make_room() {
+        if (size_ + 8 > cells_.size()) cells_.resize(2 * size_ + 64);
+    }
+    void push_if(bool wanted, Index cell) {
+        cells_[size_] = cell;
+        size_ += wanted;
+    }
+
+  private:
+    std::vector<Index> cells_;
+    std::size_t size_ = 0;
 };
 
+/// One flat: its stuck cells, those beside a way out (a cell of the same height that is not stuck: it flows lower, or
+/// the water leaves there), and those beside higher terrain.
+struct Flat {
+    Queue cells, at_exit, at_rim;
+};
+
+/// Puts the stuck neighbours that do not carry `mark` yet into the queue. Returns the flags of all level neighbours
+/// that some of them lack.
+std::uint8_t reach_from(Flats& flats, Index cell, std::uint8_t mark, Queue& queue) {
+    std::uint8_t common = 255;
+    queue.make_room();
+    visit_level_neighbors(flats, cell, [&](Index other, Slot) {
+        const std::uint8_t state = flats.state[other];
+        common &= state;
+        queue.push_if((state & (stuck | mark)) == stuck, other);
+        flats.state[other] = state | mark;
+    });
+    return static_cast<std::uint8_t>(~common);
+}
+
 void collect(Flats& flats, Index start, Flat& flat) {
-    flat.cells.assign(1, start);
+    flat.cells.clear();
     flat.at_exit.clear();
     flat.at_rim.clear();
+    flat.cells.make_room();
+    flat.cells.push_if(true, start);
     flats.state[start] |= collected;
     for (std::size_t next = 0; next < flat.cells.size(); ++next) {
         const Index cell = flat.cells[next];
-        bool at_exit = false;
-        visit_level_neighbors(flats, cell, [&](Index other, Slot) {
-            at_exit = at_exit || !(flats.state[other] & stuck);
-            if ((flats.state[other] & (stuck | collected)) != stuck) return;
-            flats.state[other] |= collected;
-            flat.cells.push_back(other);
-        });
-        if (at_exit) flat.at_exit.push_back(cell);
-        if (flats.state[cell] & has_higher) flat.at_rim.push_back(cell);
+        const std::uint8_t lacking = reach_from(flats, cell, collected, flat.cells);
+        flat.at_exit.make_room();
+        flat.at_exit.push_if(lacking & stuck, cell);
+        flat.at_rim.make_room();
+        flat.at_rim.push_if(flats.state[cell] & has_higher, cell);
     }
 }
 
 /// Adds `weight` times the number of steps from the cells in `queue` (1 there) to the surface, breadth first.
-void add_steps(Flats& flats, std::vector<Index>& queue, std::uint8_t mark, std::int32_t weight) {
-    for (const Index cell : queue) flats.state[cell] |= mark;
+void add_steps(Flats& flats, Queue& queue, std::uint8_t mark, std::int32_t weight) {
+    for (std::size_t i = 0; i < queue.size(); ++i) flats.state[queue[i]] |= mark;
     std::size_t next = 0;
     for (std::int32_t step = 1; next < queue.size(); ++step) {
         for (const std::size_t end = queue.size(); next < end; ++next) {
             const Index cell = queue[next];
             flats.surface[cell] += weight * step;
-            visit_level_neighbors(flats, cell, [&](Index other, Slot) {
-                if ((flats.state[other] & (stuck | mark)) != stuck) return;
-                flats.state[other] |= mark;
-                queue.push_back(other);
-            });
+            reach_from(flats, cell, mark, queue);
         }
     }
 }
@@ -139,17 +177,13 @@ void add_steps(Flats& flats, std::vector<Index>& queue, std::uint8_t mark, std::
 /// falls by 2 towards the way out and the second changes by at most 1 from cell to cell, so there always is a lower
 /// one. Ties: straight before diagonal, then the lower slot.
 Slot slot_in_flat(const Flats& flats, Index cell) {
-    constexpr std::int32_t below_all = std::numeric_limits<std::int32_t>::min();
-    Slot best = no_flow;
-    std::int32_t lowest = flats.surface[cell];
+    constexpr std::int64_t below_all = std::numeric_limits<std::int32_t>::min();
+    std::int64_t best = std::numeric_limits<std::int64_t>::max();
     visit_level_neighbors(flats, cell, [&](Index other, Slot slot) {
-        const std::int32_t surface = flats.state[other] & stuck ? flats.surface[other] : below_all;
-        const bool straighter = best != no_flow && surface == lowest && best % 2 == 1 && slot % 2 == 0;
-        if (surface >= lowest && !straighter) return;
-        lowest = surface;
-        best = slot;
+        const std::int64_t surface = flats.state[other] & stuck ? std::int64_t{flats.surface[other]} : below_all;
+        best = std::min(best, surface * 16 + (slot & 1) * 8 + slot);
     });
-    return best;
+    return static_cast<Slot>(best & 7);
 }
 
 }  // namespace
@@ -167,7 +201,9 @@ Index resolve_flats(const Grid& grid, std::span<const double> elevation_m, std::
         if (flat.at_exit.empty()) continue;
         add_steps(flats, flat.at_exit, reached_from_exit, 2);
         add_steps(flats, flat.at_rim, reached_from_rim, -1);
-        for (const Index cell : flat.cells) directions[cell] = slot_in_flat(flats, cell);
+        for (std::size_t i = 0; i < flat.cells.size(); ++i) {
+            directions[flat.cells[i]] = slot_in_flat(flats, flat.cells[i]);
+        }
         resolved += static_cast<Index>(flat.cells.size());
     }
     return resolved;
