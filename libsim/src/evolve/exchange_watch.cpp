@@ -21,13 +21,13 @@ Index ExchangeWatch::observe(const FlowDirections& directions) {
 }
 
 bool ExchangeWatch::only_the_same() const {
-    return step_ > last_new_change_ + patience_ && step_ < last_any_change_ + patience_ && last_any_change_ != 0;
+    return last_any_change_ != 0 && step_ >= last_new_change_ + patience_ && step_ < last_any_change_ + patience_;
 }
 
 void ExchangeWatch::freeze() {
     frozen_.resize(last_change_.size(), no_flow);
     for (Index node = 0; node < last_change_.size(); ++node) {
-        if (last_change_[node] != 0 && step_ - last_change_[node] <= patience_) frozen_[node] = before_[node];
+        if (last_change_[node] != 0 && step_ - last_change_[node] < patience_) frozen_[node] = before_[node];
     }
     last_new_change_ = step_;
 }

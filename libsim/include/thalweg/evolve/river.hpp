@@ -14,9 +14,9 @@ namespace thalweg::evolve {
 
 /// Stream-power incision dh/dt = u − k·A^m·S^n (Whipple & Tucker 1999), with the talus limit of Musgrave et al. 1989.
 struct River {
-    double k = 0;                                           ///< erodibility, m^(1−2m)/yr
-    double m = 0.5;                                         ///< area exponent
-    double n = 1;                                           ///< slope exponent, 0.3 … 5
+    double k = 0;                                                  ///< erodibility, m^(1−2m)/yr
+    double m = 0.5;                                                ///< area exponent
+    double n = 1;                                                  ///< slope exponent, 0.3 … 5
     double talus_slope = std::numeric_limits<double>::infinity();  ///< tan of the steepest stable angle; infinity: off
     terrain::Receiver receiver = terrain::Receiver::steepest;
 };
@@ -24,11 +24,11 @@ struct River {
 /// Volumes moved in one step or many (m³), each summed from its own law and not from the difference it should close.
 /// Base-level nodes are in no term.
 struct MassBalance {
-    double uplifted_m3 = 0;     ///< Σ a·dt·u
-    double eroded_m3 = 0;       ///< Σ a·dt·k·A^m·S^n at the slopes at the end of the step
-    double talus_m3 = 0;        ///< what the talus limit took
-    double exported_m3 = 0;     ///< eroded + talus (− deposited): what left through the outlets
-    double stored_m3 = 0;       ///< Σ a·(h_end − h_start)
+    double uplifted_m3 = 0;  ///< Σ a·dt·u
+    double eroded_m3 = 0;    ///< Σ a·dt·k·A^m·S^n at the slopes at the end of the step
+    double talus_m3 = 0;     ///< what the talus limit took
+    double exported_m3 = 0;  ///< eroded + talus (− deposited): what left through the outlets
+    double stored_m3 = 0;    ///< Σ a·(h_end − h_start)
 
     /// (uplifted − exported − stored) / uplifted; 0 when nothing was uplifted.
     double relative_residual() const;
@@ -37,31 +37,40 @@ struct MassBalance {
 /// Where the water goes in a landscape, lakes led over their passes.
 struct Drainage {
     FlowDirections directions;
-    std::vector<Index> order;              ///< receivers before donors
-    std::vector<double> area_m2;           ///< effective drainage area: rainfall-weighted
+    std::vector<Index> order;     ///< receivers before donors
+    std::vector<double> area_m2;  ///< effective drainage area: rainfall-weighted
     Index lakes = 0;
 };
 
-/// `frozen`: direction each node keeps as long as it is downhill, `no_flow` for the free ones; empty: all are free.
+/// Routes, leads lakes over their passes, orders the nodes and adds up the rain: linear in the nodes but for the
+/// sorting of passes. `frozen`: direction each node keeps as long as it is downhill, `no_flow` for the free ones;
+/// empty: all are free.
 Drainage drain(const Grid&, const Landscape&, const Setting&, terrain::Receiver, const FlowDirections& frozen = {});
 Drainage drain(const Mesh&, const Landscape&, const Setting&, terrain::Receiver, const FlowDirections& frozen = {});
 
 /// What a step did besides changing the landscape.
 struct StepReport {
     double max_rate_m_per_yr;
-    double mean_rate_m_per_yr;   ///< Σ a·|Δh| / (dt·Σ a), base level left out
+    double mean_rate_m_per_yr;  ///< Σ a·|Δh| / (dt·Σ a), base level left out
     int largest_newton_iterations;
     MassBalance mass;
 };
 
 /// One implicit step (Braun & Willett 2013) along the given drainage, from the outlets up: with b = h + dt·u, a node
-/// stays at b where its receiver ends no lower, else x solves x = b − dt·k·A^m·((x − h_receiver)/d)^n in (h_receiver, b);
-/// then the talus limit. First order in time, stable for every dt.
+/// stays at b where its receiver ends no lower, else x solves x = b − dt·k·A^m·((x − h_receiver)/d)^n in (h_receiver,
+/// b); then the talus limit. First order in time, stable for every dt; linear in the nodes, one call of pow per node
+/// where n ≠ 1 (and one where m is neither 0.5 nor 1).
+///
+/// A node without receiver keeps its height and is in no term: base level, an `open` node with no lower neighbour, and
+/// the lowest node of a connected piece that has no outlet at all. Nodes without data (NaN) stay as they are.
+/// Throws Error if sizes do not fit, k or m is negative, n is outside [0.3, 5], or the talus slope or dt is not
+/// positive.
 StepReport erode(const Grid&, const Drainage&, const River&, const Setting&, double dt_yr, Landscape&);
 StepReport erode(const Mesh&, const Drainage&, const River&, const Setting&, double dt_yr, Landscape&);
 
 /// Slope S ≥ 0 that solves drop = L·S + c·S^n, that is the end-of-step slope over length L of a node `drop` above its
-/// receiver before erosion, with c = dt·k·A^m. Safeguarded Newton, bracketed, for n from 0.3 to 5, to the last bits.
+/// receiver before erosion, with c = dt·k·A^m. Bounded iterations, for n from 0.3 to 5, to the last bits; 0 without
+/// drop. For many nodes with one n, make one `SlopeSolver` (`thalweg/evolve/slope.hpp`), which this calls.
 struct SlopeSolution {
     double slope;
     int iterations;

@@ -11,17 +11,17 @@ namespace thalweg::evolve {
 struct TimeOptions {
     double step_yr;
     Index max_steps;
-    double convergence = 1e-3;   ///< stop when the mean rate falls below this times the mean uplift; 0: never
+    double convergence = 1e-3;  ///< stop when the mean rate falls below this times the mean uplift; 0: never
 };
 
 /// After each step, for the history, progress and snapshots.
 struct StepRecord {
-    Index step;                  ///< from 1
+    Index step;  ///< from 1
     double time_yr;
     Index lakes;
-    double elevation_max_m, elevation_mean_m;   ///< mean weighted by cell area
+    double elevation_max_m, elevation_mean_m;  ///< mean weighted by cell area
     double max_rate_m_per_yr, mean_rate_m_per_yr;
-    double seconds;              ///< wall time of this step; the only member that differs between equal runs
+    double seconds;  ///< wall time of this step; the only member that differs between equal runs
 };
 
 enum class StopReason { converged, max_steps };
@@ -33,7 +33,7 @@ struct SimulationResult {
     double max_rate_m_per_yr = 0;
     double mean_rate_m_per_yr = 0;
     Index frozen_receivers = 0;
-    std::vector<std::uint8_t> frozen;   ///< 1 at nodes whose receiver was frozen
+    std::vector<std::uint8_t> frozen;  ///< 1 at nodes whose receiver was frozen
     Index lakes_final = 0;
     MassBalance mass;
     int largest_newton_iterations = 0;
@@ -41,8 +41,17 @@ struct SimulationResult {
 
 using Observer = std::function<void(const StepRecord&, const Landscape&)>;
 
-/// Steps until the landscape is steady or the steps are used up. If for 50 steps only the same few nodes exchanged their
-/// receivers, those are frozen and counted.
+/// Steps until the landscape is steady or the steps are used up.
+///
+/// Steady: the mean rate Σa·|Δh|/dt is at most `convergence` times Σa·u, and the new heights drain the same way as
+/// those before the step (or the rate stays as low for one step more), so that no receiver that changes at the very end
+/// sets the landscape going again. The bound is on the mean: in a landscape of N nodes one node may be N times further
+/// off. For slopes right to 1e-8 at every one of N nodes ask for convergence = 1e-8/N; 1e-14 is within the reach of
+/// doubles.
+///
+/// If for 50 steps only the same nodes exchanged their receivers, while the mean rate was under a tenth of the mean
+/// uplift and no longer fell to half, those receivers are frozen (as long as they lead down) and counted. With
+/// convergence = 0 nothing is frozen.
 SimulationResult simulate(const Grid&, const River&, const Setting&, const TimeOptions&, Landscape&,
                           const Observer& = {});
 SimulationResult simulate(const Mesh&, const River&, const Setting&, const TimeOptions&, Landscape&,
