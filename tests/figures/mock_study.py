@@ -190,6 +190,8 @@ def write_study(folder, z=None, synthetic=None, origin=(-84.3, 36.6), step=1 / 1
     place = dict(origin=origin, step=step, crs=crs, cell=cell, threshold=threshold)
     real = write_terrain(os.path.join(folder, "measure"), "filled.tif", z, **place)
     made = write_terrain(os.path.join(folder, "simulate"), "elevation.tif", synthetic, **place)
+    write_terrain(os.path.join(folder, "basin"), "filled.tif", z, **place)
+    remade = write_terrain(os.path.join(folder, "synthetic"), "filled.tif", synthetic, **place)
     valid = int(np.isfinite(z).sum())
     real["input"] = {"file": "hills.tif", "sha256": "0" * 64, "crs": "EPSG:4326 (WGS 84)", "geographic": True,
                      "rows": z.shape[0], "cols": z.shape[1], "dx_m": cell, "dy_m": cell, "valid_cells": valid,
@@ -197,7 +199,8 @@ def write_study(folder, z=None, synthetic=None, origin=(-84.3, 36.6), step=1 / 1
                      "elevation_min_m": float(np.nanmin(z)), "elevation_max_m": float(np.nanmax(z)),
                      "elevation_mean_m": float(np.nanmean(z))}
     real["conditioning"] = {"method": "fill", "pits": 12, "cells_changed": 40, "volume_m3": 1.2e6, "flat_cells": 9}
-    write_json(os.path.join(folder, "measure", "summary.json"), real)
+    for step, summary in (("measure", real), ("basin", real), ("synthetic", remade)):
+        write_json(os.path.join(folder, step, "summary.json"), summary)
     write_simulation(os.path.join(folder, "simulate"), made, synthetic, valid * cell**2)
     write_fit(os.path.join(folder, "fit"), real["slope_area"])
     write_comparison(os.path.join(folder, "compare"), real, made)

@@ -118,8 +118,8 @@ class Figures(unittest.TestCase):
         self.assertNotIn(self.study, page)
 
     def test_the_report_loads_nothing_shows_both_terrains_and_says_why_a_number_is_missing(self):
-        for side, theta in (("a", 0.4321), ("b", 0.5678)):
-            self.edit(("compare", "comparison.json"), lambda c, s=side, t=theta: c[s]["terrain"]["slope_area"].update(theta=t))
+        for step, theta in (("basin", 0.4321), ("synthetic", 0.5678)):
+            self.edit((step, "summary.json"), lambda content, value=theta: content["slope_area"].update(theta=value))
         self.succeed("report", self.study)
         page = contents(self.path("report.html")).decode()
         self.assertRegex(page, r"Concavity θ</th><td>0\.4321</td><td>0\.5678</td>")
@@ -131,8 +131,8 @@ class Figures(unittest.TestCase):
         self.assertIn("<sup>a</sup> slopes of the highest order are not known", page)
 
     def test_summaries_without_any_number_survive(self):
-        for parts in (("measure", "summary.json"), ("simulate", "summary.json"), ("fit", "fit.json"),
-                      ("compare", "comparison.json")):
+        for parts in (("measure", "summary.json"), ("basin", "summary.json"), ("synthetic", "summary.json"),
+                      ("simulate", "summary.json"), ("fit", "fit.json"), ("compare", "comparison.json")):
             content = replace_numbers(json.loads(contents(self.path(*parts))))
             mock_study.write_json(self.path(*parts), content)
         for name in ("hypsometry.csv", "slope_area.csv", "slope_area_points.csv"):

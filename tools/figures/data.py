@@ -88,13 +88,15 @@ def get(content, path, default=None):
 
 
 def notes_of(content):
-    """The notes of a result as {key or "": sentence}; they may be an object, a list of sentences or one sentence."""
+    """The notes of a result as (key, sentence); a note in a list may begin with the key that it explains ("horton: …")."""
     notes = content.get("notes") if isinstance(content, dict) else None
     if isinstance(notes, dict):
-        return {str(key): _sentence(value) for key, value in notes.items()}
-    if isinstance(notes, str):
-        return {"": notes}
-    return {f"#{i}": _sentence(note) for i, note in enumerate(notes or [])}
+        return [(str(key), _sentence(value)) for key, value in notes.items()]
+    found = []
+    for note in [notes] if isinstance(notes, str) else notes or []:
+        keyed = re.match(r"([a-z_][\w.]*): (.+)", _sentence(note), re.DOTALL)
+        found.append(keyed.groups() if keyed else ("", _sentence(note)))
+    return found
 
 
 def _sentence(note):
@@ -107,13 +109,13 @@ def reason(content, path):
     """Why the value at `path` is null, as far as the notes tell: by key, by its parents' key, or by being named."""
     notes = notes_of(content)
     last = path.rsplit(".", 1)[-1]
-    for key, sentence in notes.items():
+    for key, sentence in notes:
         if key in (path, last) or (key and path.startswith(key + ".")):
             return sentence
     if len(last) < 4:  # too short to be told from an ordinary word
         return ""
     named = re.compile(rf"\b{re.escape(last)}\b")
-    return next((sentence for sentence in notes.values() if named.search(sentence)), "")
+    return next((sentence for _, sentence in notes if named.search(sentence)), "")
 
 
 def terrain_of(summary):

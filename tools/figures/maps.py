@@ -288,8 +288,8 @@ def draw_colours(drawing, axes, limits, terrains):
     bar.outline.set_linewidth(0.4)
 
 
-def single(raster, network, title=None):
-    """One map. Returns the figure and the lowest Strahler order drawn."""
+def single(raster, network, studied=None):
+    """One map. Returns the figure and the lowest Strahler order drawn; `studied`: a network whose basins stand out."""
     terrain = read_terrain(raster)
     left, right, bottom, top = terrain.extent
     ratio = (top - bottom) / (right - left) * terrain.aspect
@@ -300,10 +300,10 @@ def single(raster, network, title=None):
     draw_terrain(axes, terrain, limits)
     lowest = draw_rivers(axes, network, terrain, panel)
     draw_basins(axes, network, terrain)
+    if studied:
+        draw_basins(axes, studied, terrain, 1.4)
     draw_scale_bar(axes, terrain)
     draw_colours(drawing, axes, limits, [terrain])
-    if title:
-        axes.set_title(title)
     return drawing, lowest
 
 

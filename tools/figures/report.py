@@ -55,9 +55,10 @@ def picture(content, kind, alt, caption, css=""):
 
 
 def terrains(study):
-    real = (study.step("measure/filled.tif"), study.step("measure/network.gpkg"), "Real")
-    synthetic = (study.step("simulate/elevation.tif"), study.step("simulate/network.gpkg"), "Synthetic")
-    overview, lowest = maps.single(*real[:2])
+    whole = (study.step("measure/filled.tif"), study.step("measure/network.gpkg"))
+    real = (whole[0], study.step(f"{study.real_step}/network.gpkg"), "Real")
+    synthetic = (study.step("simulate/elevation.tif"), study.step(f"{study.synthetic_step}/network.gpkg"), "Synthetic")
+    overview, lowest = maps.single(*whole, studied=real[1] if study.real_step == "basin" else None)
     both = maps.pair(real, synthetic)
     threshold = number(get(study.measure, "channels.threshold_area_m2", 0) / 1e6)
     rivers = "all rivers" if lowest == 1 else f"rivers of Strahler order {lowest} and above"
@@ -69,7 +70,8 @@ def terrains(study):
             + picture(style.png(overview, style.MAP_DPI), "png",
                       f"Shaded relief map of {study.name()} with {rivers} in blue and basin outlines in dark grey.",
                       f"<b>Figure 2.</b> The whole measured terrain with {rivers} (channels begin at {threshold} km²) and the "
-                      "outlines of its larger basins.", "medium"))
+                      "outlines of its larger basins" + (", the studied one drawn bold." if study.real_step == "basin" else "."),
+                      "medium"))
 
 
 def slopes(study):
@@ -88,11 +90,11 @@ def slopes(study):
 
 
 def shape(study):
-    integrals = [show(get(side.terrain, "hypsometry.integral")) for side in study.compared]
-    return (picture(style.svg(curves.hypsometry(study.compared)), "svg+xml",
+    integrals = [show(get(side.terrain, "hypsometry.integral")) for side in study.sides()]
+    return (picture(style.svg(curves.hypsometry(study.sides())), "svg+xml",
                     f"Hypsometric curves; integral {integrals[0]} real, {integrals[1]} synthetic.",
                     "<b>Figure 4.</b> Hypsometric curves: the share of the area above each relative height.", "narrow")
-            + picture(style.svg(curves.horton(study.compared)), "svg+xml",
+            + picture(style.svg(curves.horton(study.sides())), "svg+xml",
                       "Four plots of stream number, mean length, mean drainage area and mean slope against Strahler order.",
                       "<b>Figure 5.</b> Horton’s laws: streams of each Strahler order, their mean length, drainage area and "
                       "slope. The ratios are those of the regression lines.", "medium"))
@@ -159,10 +161,8 @@ def numbers(study):
 
 
 def _coverage(study):
-    name = get(study.comparison.get("a") if isinstance(study.comparison.get("a"), dict) else {}, "covers")
-    if name:
-        return escape(str(name))
-    return "the complete catchments of the DEM" if study.compared[0] is study.real else "the ground that was compared"
+    return ("the largest complete catchment of the DEM, the ground that was simulated" if study.real_step == "basin"
+            else "the complete catchments of the DEM")
 
 
 def _cell(value, factor, digits, why, footnotes):
@@ -216,6 +216,7 @@ def _fit_words(content):
         given += f" and an uplift of {plain(uplift * 1000)} mm/yr"
     state = "converged" if content.get("converged") else "did not converge"
     message = f" ({escape(str(content['message']))})" if content.get("message") else ""
+    message = "" if content.get("converged") else message
     return (f"<p>Method <i>{method}</i> on drainage areas{area}, given {given}. It {state} in "
             f"{show(content.get('iterations'))} iterations{message}; reduced χ² {show(content.get('reduced_chi2'))}.</p>")
 
@@ -233,6 +234,12 @@ def _caveats(content):
         points.append(f"Compare <i>k</i> <i>A</i><sub>0</sub><sup><i>m</i></sup> at the reference area "
                       f"<i>A</i><sub>0</sub> = {number(area / 1e6)} km² rather than <i>k</i>: log <i>k</i> and <i>m</i> are "
                       f"correlated at {show(content.get('correlation_log_k_m'))}.")
+    bend, error = get(content, "steady_check.curvature"), get(content, "steady_check.curvature_se")
+    if bend is not None and error is not None:
+        straight = "as far as the data tell the line is straight" if abs(bend) < 2 * error else (
+            "the line is bent, so one <i>k</i> and <i>m</i> do not describe all of it")
+        points.append(f"A steady network on one rock gives a straight line. A square term in it comes out as {show(bend)} ± "
+                      f"{number(error, 2)}: {straight}.")
     points.append("The law assumes that incision balances uplift everywhere along these rivers, on one rock and under one "
                   "climate; where it does not, the numbers are averages that fit, not properties of the rock.")
     return "<ul>" + "".join(f"<li>{point}</li>" for point in points) + "</ul>"
@@ -244,15 +251,24 @@ def comparison(study):
         return "<p>The two terrains were not compared.</p>"
     footnotes, rows = Footnotes(), []
     for aspect in aspects:
-        cells = []
-        for key in ("a", "b", "distance", "scale", "verdict"):
-            value = aspect.get(key)
-            why = reason(study.comparison, f"{aspect.get('name')}.{key}") if value is None else ""
-            cells.append(show(value) + footnotes.mark(why))
-        rows.append([escape(str(aspect.get("name", "")).replace("_", " ").capitalize().replace("Slope area", "Slope–area")),
-                     *cells])
+        name = str(aspect.get("name", ""))
+        title = ASPECTS.get(name, name.replace("_", " ").capitalize())
+        quantity = QUANTITIES.get(aspect.get("quantity"), escape(str(aspect.get("quantity") or "")))
+        cells = [_aspect_cell(study, aspect, key, footnotes) for key in ("a", "b", "distance", "scale", "verdict")]
+        cells[2] += footnotes.mark(aspect.get("distance_definition") or "")
+        rows.append([escape(title) + (f" ({quantity})" if quantity else ""), *cells])
     head = ["aspect", REAL, SYNTHETIC, "distance", "scale (model’s own spread)", "verdict"]
     return table(head, rows) + footnotes.html()
+
+
+ASPECTS = {"slope_area": "Slope–area", "horton": "Horton’s ratios"}
+QUANTITIES = {"theta": "θ", "RB": "<i>R</i><sub>B</sub>"}
+
+
+def _aspect_cell(study, aspect, key, footnotes):
+    value = aspect.get(key)
+    why = reason(study.comparison, f"{aspect.get('name')}.{key}") if value is None else ""
+    return show(value) + footnotes.mark(why)
 
 
 def simulation(study):
@@ -274,8 +290,8 @@ def notes(study):
 
 
 #: Left out: what changes from run to run, and lists that are better read in the manifest itself.
-UNSHOWN = ("seconds", "timing", "date", "time", "threads", "outputs", "files", "notes", "warnings", "experiment",
-           "parameters")
+UNSHOWN = ("seconds", "timing", "date", "time", "threads", "input", "outputs", "files", "notes", "warnings",
+           "experiment", "parameters", "program")
 
 
 def provenance(study):

@@ -3,11 +3,12 @@
 import os
 
 import sides
-from data import get, notes_of, read_csv, read_json, read_toml, reason, require_json, terrain_of
+from data import get, notes_of, read_csv, read_json, read_toml, reason, require_json
 
 
 class Study:
-    """Everything that `run` wrote, read once."""
+    """Everything that `run` wrote, read once. The two terrains set side by side are the measured basin and the simulated
+    landscape measured like a DEM, where the study has them; else the whole DEM and the simulation itself."""
 
     def __init__(self, folder):
         self.folder = folder
@@ -19,16 +20,21 @@ class Study:
         self.manifest = read_json(folder, "manifest.json") or {}
         self.experiment = read_toml(folder, "experiment.toml") or read_toml(self.step("simulate"), "experiment.toml")
         self.history = read_csv(self.step("simulate"), "history.csv")
-        self.real = sides.from_folder(self.step("measure"), "real", "real")
-        self.synthetic = sides.from_folder(self.step("simulate"), "synthetic", "synthetic")
+        self.real_step = self._first_step("basin", "measure")
+        self.synthetic_step = self._first_step("synthetic", "simulate")
+        self.real = sides.from_folder(self.step(self.real_step), "real", "real")
+        self.synthetic = sides.from_folder(self.step(self.synthetic_step), "synthetic", "synthetic")
         self.theory = sides.theory(self.step("simulate"), self.synthetic)
-        self.compared = [sides.from_comparison(self.comparison, key, self.step("compare"), label, label)
-                         for key, label in (("a", "real"), ("b", "synthetic"))]
-        self.compared = [side if side.terrain else whole
-                         for side, whole in zip(self.compared, (self.real, self.synthetic))]
+        self.summaries = [read_json(self.step(step), "summary.json") for step in (self.real_step, self.synthetic_step)]
+
+    def _first_step(self, *names):
+        return next(name for name in names if name == names[-1] or os.path.exists(self.step(f"{name}/summary.json")))
 
     def step(self, name):
         return os.path.join(self.folder, name)
+
+    def sides(self):
+        return [self.real, self.synthetic]
 
     def name(self):
         """The DEM's file name without folders and extension."""
@@ -37,33 +43,24 @@ class Study:
 
     def value(self, which, *paths):
         """The first of the paths that one side has (0 real, 1 synthetic), and where it is null the reason."""
-        documents = [self.compared[which].terrain]
-        if which == 1 and documents[0] is not terrain_of(self.simulate):
-            documents.append({key: self.simulate.get(key) for key in SIMULATION_KEYS})
-        elif which == 1:
-            documents.append(self.simulate)
+        documents = [self.sides()[which].terrain, self.summaries[which]]
         for document in documents:
             for path in paths:
                 found = get(document, path)
                 if found is not None:
                     return found, ""
-        whole = self.measure if which == 0 else self.simulate
-        reasons = (reason(document, path) for document in (*documents, whole) for path in paths)
+        reasons = (reason(document, path) for document in documents for path in paths)
         return None, next(filter(None, reasons), "")
 
     def notes(self):
         """Every note and warning once, with the step it came from."""
-        seen, found = set(), []
-        sources = (("measure", self.measure), ("fit", self.fit), ("simulate", self.simulate),
-                   ("simulate", self.simulate.get("terrain") or {}), ("compare", self.comparison), ("run", self.manifest))
-        for step, content in sources:
-            warnings = {"notes": content.get("warnings")} if isinstance(content, dict) else {}
-            for key, sentence in (*notes_of(content).items(), *notes_of(warnings).items()):
-                if sentence and (key, sentence) not in seen and sentence not in (text for _, _, text in found):
-                    seen.add((key, sentence))
-                    found.append((step, "" if key.startswith("#") else key, sentence))
+        found = []
+        steps = {"measure": self.measure, self.real_step: self.summaries[0], "fit": self.fit, "simulate": self.simulate,
+                 self.synthetic_step: self.summaries[1], "compare": self.comparison, "run": self.manifest}
+        for step, content in steps.items():
+            content = content or {}
+            warnings = notes_of({"notes": content.get("warnings")})
+            for key, sentence in (*notes_of(content), *notes_of(content.get("terrain")), *warnings):
+                if key not in steps and (key, sentence) not in (each[1:] for each in found):
+                    found.append((step, key, sentence))
         return found
-
-
-#: What belongs to the run itself and not to how its terrain was measured.
-SIMULATION_KEYS = ("domain_area_m2", "elevation_max_m", "elevation_mean_m")

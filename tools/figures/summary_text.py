@@ -17,12 +17,14 @@ def measured(study):
         _clause(source.get("area_m2"), lambda v: f"{number(v / 1e6, 4)} km² of ground"),
         _clause(source.get("elevation_min_m"), lambda v: f"{number(float(v), 4)} to "
                 f"{quantity(source.get('elevation_max_m'), 'm', 4)} high"))))
-    channels = study.measure.get("channels") or {}
-    share = _clause(channels.get("share_used"), lambda v: f", {number(100.0 * v, 2)} % of them in complete catchments")
-    rivers = _clause(channels.get("links"), lambda v: f": from {number((channels.get('threshold_area_m2') or 0) / 1e6)} km² "
-                     f"of drainage area on it carries {number(v)} river links{share}")
-    return (f"The terrain in <i>{escape(study.name())}</i>" + (f" ({ground})" if ground else "")
-            + f" was measured{rivers}.")
+    words = f"The terrain in <i>{escape(study.name())}</i>" + (f" ({ground})" if ground else "") + " was measured"
+    channels = study.real.terrain.get("channels") or {}
+    rivers = _clause(channels.get("links"), lambda v: f" with {number(v)} river links from "
+                     f"{number((channels.get('threshold_area_m2') or 0) / 1e6)} km² of drainage area on")
+    if study.real_step != "basin":
+        return words + rivers + "."
+    area = study.value(0, "input.area_m2")[0]
+    return f"{words}, and its largest complete catchment ({_clause(area, lambda v: f'{number(v / 1e6)} km²')}) studied{rivers}."
 
 
 def fitted(study):
@@ -40,7 +42,7 @@ def fitted(study):
 
 def compared(study):
     nodes = study.simulate.get("nodes")
-    text = "A landscape" + (f" of {number(nodes)} nodes" if nodes is not None else "") + " grown with these values"
+    text = "A stream-power landscape" + (f" of {number(nodes)} nodes" if nodes is not None else "") + " grown with these values"
     pairs = []
     for label, path, digits in (("a hypsometric integral of", "hypsometry.integral", 3),
                                 ("a concavity of", "slope_area.theta", 3),

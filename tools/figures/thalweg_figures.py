@@ -78,7 +78,8 @@ def write(path, content):
 
 
 #: The steps of a study, slowest first, and the folders that `run` gives them.
-STEPS = (("report", ""), ("analyze", "measure"), ("simulate", "simulate"), ("compare", "compare"), ("fit", "fit"))
+STEPS = (("report", ""), ("analyze", "measure"), ("analyze", "basin"), ("analyze", "synthetic"), ("simulate", "simulate"),
+         ("compare", "compare"), ("fit", "fit"))
 
 
 def run_study(folder):
