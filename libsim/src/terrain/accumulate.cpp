@@ -10,8 +10,11 @@ namespace thalweg::terrain {
 
 std::vector<double> accumulate(const FlowGraph& graph, std::span<const double> amount) {
     check_sizes(graph.size(), amount.size(), amount.size());
-    std::vector<double> sum(graph.size(), 0.0);
-    for (const Index node : graph.order) sum[node] = amount[node];
+    std::vector<double> sum(amount.begin(), amount.end());
+    if (graph.order.size() < sum.size()) {
+        std::fill(sum.begin(), sum.end(), 0.0);
+        for (const Index node : graph.order) sum[node] = amount[node];
+    }
     for (const Index node : std::views::reverse(graph.order)) {
         if (graph.receiver[node] != none) sum[graph.receiver[node]] += sum[node];
     }

@@ -38,10 +38,10 @@ void compare_row(const double* here, Index cols, std::uint8_t* level, std::uint8
     for (Index c = 1; c + 1 < cols; ++c) {
         const double height = here[c];
         double bits = 0;
-        double higher = 0;
+        double highest = height;
         const auto offer = [&](double neighbor, double bit) {
             bits += neighbor == height ? bit : 0;
-            higher = neighbor > height ? double{has_higher} : higher;
+            highest = neighbor > highest ? neighbor : highest;
         };
         offer(here[c + 1], 1);
         offer(below[c + 1], 2);
@@ -52,7 +52,7 @@ void compare_row(const double* here, Index cols, std::uint8_t* level, std::uint8
         offer(above[c], 64);
         offer(above[c + 1], 128);
         level[c] = static_cast<std::uint8_t>(static_cast<int>(bits));
-        state[c] = static_cast<std::uint8_t>(static_cast<int>(higher));
+        state[c] = static_cast<std::uint8_t>(static_cast<int>(highest > height ? double{has_higher} : 0.0));
     }
 }
 

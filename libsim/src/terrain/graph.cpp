@@ -2,19 +2,24 @@
 #include "thalweg/terrain/graph.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "terrain/check_sizes.hpp"
+#include "terrain/downhill.hpp"
 #include "thalweg/core/parallel.hpp"
 
 namespace thalweg::terrain {
 namespace {
 
+constexpr Slot placed = 255;
+
 template <Topology T>
 std::vector<Slot> count_donors(const T& topology, const FlowDirections& directions) {
+    const auto neighbor = downhill(topology);
     std::vector<Slot> donors(topology.size(), 0);
     for (Index node = 0; node < topology.size(); ++node) {
-        if (directions[node] != no_flow) ++donors[topology.neighbor(node, directions[node])];
+        if (directions[node] != no_flow) ++donors[neighbor(node, directions[node])];
     }
     return donors;
 }
@@ -25,22 +30,49 @@ template <Topology T>
 std::vector<Index> order_nodes(const T& topology, std::span<const double> elevation_m,
                                const FlowDirections& directions) {
     check_sizes(topology.size(), elevation_m.size(), directions.size());
+    const auto neighbor = downhill(topology);
     std::vector<Slot> awaited = count_donors(topology, directions);
-    const std::vector<Slot> donors = awaited;
     std::vector<Index> order(topology.size());
     Index free = topology.size();
     for (Index leaf = 0; leaf < topology.size(); ++leaf) {
-        if (donors[leaf] != 0 || std::isnan(elevation_m[leaf])) continue;
+        if (awaited[leaf] != 0 || std::isnan(elevation_m[leaf])) continue;
         Index node = leaf;
-        order[--free] = node;
-        while (directions[node] != no_flow) {
-            node = topology.neighbor(node, directions[node]);
-            if (--awaited[node] != 0) break;
+        while (true) {
             order[--free] = node;
+            awaited[node] = placed;
+            if (directions[node] == no_flow) break;
+            node = neighbor(node, directions[node]);
+            if (--awaited[node] != 0) break;
         }
     }
     order.erase(order.begin(), order.begin() + free);
     return order;
+}
+
+void write_lengths(const Mesh& mesh, const FlowDirections& directions, std::vector<double>& length) {
+    parallel_for(0, mesh.size(), [&](Index first, Index last) {
+        for (Index node = first; node < last; ++node) {
+            if (directions[node] != no_flow) length[node] = mesh.length(node, directions[node]);
+        }
+    });
+}
+
+/// By rows, whose eight lengths are looked up once.
+void write_lengths(const Grid& grid, const FlowDirections& directions, std::vector<double>& length) {
+    const auto rows = [&](Index first_row, Index last_row) {
+        for (Index row = first_row; row < last_row; ++row) {
+            const std::size_t first = std::size_t{row} * grid.cols;
+            std::array<double, 8> of_slot{};
+            for (Slot slot = 0; slot < 8; ++slot) {
+                const bool inside = row + Grid::row_step[slot] < grid.rows;  // row −1 wraps round to a large number
+                if (inside) of_slot[slot] = grid.length(static_cast<Index>(first), slot);
+            }
+            for (std::size_t node = first; node < first + grid.cols; ++node) {
+                if (directions[node] != no_flow) length[node] = of_slot[directions[node]];
+            }
+        }
+    };
+    parallel_for(0, grid.rows, rows, std::max<Index>(1, 16384 / grid.cols));
 }
 
 template <Topology T>
@@ -48,13 +80,13 @@ FlowGraph make_graph(const T& topology, std::span<const double> elevation_m, con
     FlowGraph graph{.receiver = std::vector<Index>(topology.size(), none),
                     .length = std::vector<double>(topology.size(), 0.0),
                     .order = order_nodes(topology, elevation_m, directions)};
+    const auto neighbor = downhill(topology);
     parallel_for(0, topology.size(), [&](Index first, Index last) {
         for (Index node = first; node < last; ++node) {
-            if (directions[node] == no_flow) continue;
-            graph.receiver[node] = topology.neighbor(node, directions[node]);
-            graph.length[node] = topology.length(node, directions[node]);
+            if (directions[node] != no_flow) graph.receiver[node] = neighbor(node, directions[node]);
         }
     });
+    write_lengths(topology, directions, graph.length);
     return graph;
 }
 
