@@ -88,7 +88,7 @@ std::vector<Point> divide_outline(const Polygon& outline, double spacing, int ex
 
 /// Bridson's front, the newest point first: neighbours in time are neighbours in space, and so in the cache.
 void grow_front(DiskGrid& grid, double spacing, Draws& draws) {
-    constexpr int attempts = 12;  // gaps are filled afterwards, so Bridson's 30 would be wasted
+    constexpr int attempts = 6;  // gaps are filled afterwards, so Bridson's 30 would be wasted
     std::vector<Index> front(grid.points().size());
     for (Index i = 0; i < front.size(); ++i) front[i] = i;
     while (!front.empty()) {
@@ -121,6 +121,12 @@ bool is_covered(const Square& square, const std::vector<Point>& points, double s
     });
 }
 
+bool is_clear(const Point& dart, const std::vector<Point>& points, double spacing2) {
+    return std::none_of(points.begin(), points.end(), [&](const Point& p) {
+        return (dart.x - p.x) * (dart.x - p.x) + (dart.y - p.y) * (dart.y - p.y) < spacing2;
+    });
+}
+
 /// Fills what room is left in one cell (the quartering of Ebeida et al. 2012): throw a dart into each square that no
 /// disc covers; where it fails, quarter the square.
 void fill_cell(DiskGrid& grid, Index cell, double spacing2, Draws& draws, std::vector<Point>& near,
@@ -137,7 +143,7 @@ void fill_cell(DiskGrid& grid, Index cell, double spacing2, Draws& draws, std::v
         // From level 2 on an uncovered square cannot touch the outline, whose own points cover its surroundings.
         if (square.level >= 2 && grid.is_crossed(cell) && !grid.is_inside(center)) continue;
         const Point dart{center.x + half * draws.signed_uniform(), center.y + half * draws.signed_uniform()};
-        if (grid.has_room(dart)) return grid.add(dart);
+        if (is_clear(dart, near, spacing2) && (!grid.is_crossed(cell) || grid.is_inside(dart))) return grid.add(dart);
         for (const Point& low : {center, Point{square.low.x, center.y}, Point{center.x, square.low.y}, square.low}) {
             squares.push_back({low, half, square.level + 1});
         }
@@ -174,7 +180,7 @@ double expected_count(const Polygon& outline, double area, double spacing) {
         on_outline += pieces_of_side(side, spacing);
         length += side;
     }
-    return on_outline + 0.695 * std::max(0.0, area - 0.6 * length * spacing) / (spacing * spacing);
+    return on_outline + 0.698 * std::max(0.0, area - 0.534 * length * spacing) / (spacing * spacing);
 }
 
 double expected_spacing(const Polygon& outline, double area, double count) {

@@ -20,7 +20,7 @@ struct PointSet {
 /// point nearer than `spacing_m` to any other, and no room for another (a gap under a millionth of the spacing apart).
 ///
 /// Bridson's (2007) front on a background grid, its remaining gaps filled by quartering (Ebeida et al. 2012). Linear in
-/// the number of points and of grid cells (2 per spacing² of the bounding box); about 0.695 area / spacing² points.
+/// the number of points and of grid cells (2 per spacing² of the bounding box); about 0.7 area / spacing² points.
 /// The same seed gives the same points on every machine.
 /// Throws Error for a spacing that is not positive, or too fine for 32-bit numbers, or an outline that is not a simple
 /// polygon of positive area (either orientation).
