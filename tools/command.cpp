@@ -3,9 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <unistd.h>
+
 #include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <iostream>
 
 #include "thalweg/core/error.hpp"
@@ -53,12 +54,40 @@ study::MeasureOptions measure_options(const DemOptions& options) {
     return measure;
 }
 
-study::Messages messages(const CommonOptions& options) {
-    study::Messages m;
-    m.warning = [](const std::string& text) { std::cerr << "thalweg: warning: " << text << '\n'; };
-    if (!options.quiet) m.progress = [](const std::string& text) { std::cerr << "thalweg: " << text << '\n'; };
-    return m;
-}
+namespace {
+
+/// One status line that rewrites itself on a terminal (elsewhere nothing), and warnings kept back until the work is
+/// done: a command that fails says exactly one line.
+class Console {
+  public:
+    explicit Console(bool quiet) : shows_status_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+    ~Console() { clear(); }
+
+    study::Messages messages() {
+        return {.progress = [this](const std::string& text) { status(text); },
+                .warning = [this](const std::string& text) { warnings_.push_back(text); }};
+    }
+
+    void finish() {
+        clear();
+        for (const std::string& text : warnings_) std::cerr << "thalweg: warning: " << text << '\n';
+    }
+
+  private:
+    static constexpr const char* start_of_line = "\r\033[K";
+
+    void status(const std::string& text) const {
+        if (shows_status_) std::cerr << start_of_line << "thalweg: " << text << std::flush;
+    }
+    void clear() const {
+        if (shows_status_) std::cerr << start_of_line << std::flush;
+    }
+
+    bool shows_status_;
+    std::vector<std::string> warnings_;
+};
+
+}  // namespace
 
 double parse_number(const std::string& option, const std::string& text, Sign sign) {
     double value = 0;
@@ -76,17 +105,20 @@ double parse_number(const std::string& option, const std::string& text, Sign sig
 void run_into_folder(const CommonOptions& options, const std::string& figures,
                      const std::function<std::string(const std::filesystem::path&, const study::Messages&)>& work) {
     const ThreadLimit limit(options.threads);
-    const study::Messages m = messages(options);
-    study::OutputFolder folder(options.out,
-                               options.force ? study::IfPresent::replace : study::IfPresent::refuse);
+    Console console(options.quiet);
+    const study::Messages m = console.messages();
+    study::OutputFolder folder(options.out, options.force ? study::IfPresent::replace : study::IfPresent::refuse);
     const std::string summary = work(folder.path(), m);
     if (!figures.empty() && !options.no_figures) {
         m.progress("drawing");
         study::draw_figures(figures, folder.path());
     }
     folder.commit();
-    if (options.json) std::cout << summary;
-    m.progress(fmt::format("results are in {}", options.out));
+    console.finish();
+    if (options.json)
+        std::cout << summary;
+    else if (!options.quiet)
+        std::cerr << "thalweg: results are in " << options.out << '\n';
 }
 
 }  // namespace thalweg::tools

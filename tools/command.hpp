@@ -35,15 +35,12 @@ void add_dem_options(CLI::App&, DemOptions&);
 io::ReadOptions read_options(const DemOptions&);
 study::MeasureOptions measure_options(const DemOptions&);
 
-/// Progress and warnings on standard error, as far as they are wanted.
-study::Messages messages(const CommonOptions&);
-
 /// A number the user typed. Throws Error, naming the option, unless it is finite and, where asked, above zero.
 enum class Sign { any, positive, not_negative };
 double parse_number(const std::string& option, const std::string& text, Sign);
 
-/// Runs `work` with a folder to write into, which appears only if it succeeds, and prints what it returns with --json.
-/// `figures` names the drawings to be made ("" for none).
+/// Runs `work` with progress and warnings on standard error and a folder to write into, which appears only if it
+/// succeeds, and prints what it returns with --json. `figures` names the drawings to be made ("" for none).
 void run_into_folder(const CommonOptions&, const std::string& figures,
                      const std::function<std::string(const std::filesystem::path&, const study::Messages&)>& work);
 

@@ -3,10 +3,9 @@
 
 #include <fmt/format.h>
 
-#include <numeric>
-
 #include "study/report_json.hpp"
 #include "thalweg/core/error.hpp"
+#include "thalweg/core/statistics.hpp"
 #include "thalweg/io/polygonize.hpp"
 #include "thalweg/io/table_file.hpp"
 #include "thalweg/study/manifest.hpp"
@@ -18,17 +17,14 @@ namespace {
 
 TerrainInput input_of(const NamedRaster& dem, const RasterMeasurement& m) {
     const Grid& grid = dem.raster.grid;
-    const double rows = grid.rows;
-    const double mean_dx = std::accumulate(grid.east_west.begin(), grid.east_west.end(), 0.0) / rows;
-    const double mean_dy = std::accumulate(grid.north_south.begin(), grid.north_south.end(), 0.0) / (rows - 1);
     return {.file = dem.file,
             .sha256 = dem.sha256,
             .crs = dem.crs_name,
             .geographic = dem.raster.placement.geographic,
             .rows = grid.rows,
             .cols = grid.cols,
-            .dx_m = mean_dx,
-            .dy_m = mean_dy,
+            .dx_m = mean(grid.east_west),
+            .dy_m = mean(grid.north_south),
             .valid_cells = m.valid_cells,
             .nodata_cells = grid.size() - m.valid_cells,
             .area_m2 = m.area_m2};
@@ -47,8 +43,10 @@ Json conditioning_json(const ConditioningReport& c, Conditioning method) {
 std::vector<double> esri_codes(const FlowDirections& directions, std::span<const double> elevation_m) {
     std::vector<double> codes(directions.size());
     for (std::size_t i = 0; i < codes.size(); ++i) {
-        if (std::isnan(elevation_m[i])) codes[i] = 255;
-        else codes[i] = directions[i] == no_flow ? 0 : 1 << directions[i];
+        if (std::isnan(elevation_m[i]))
+            codes[i] = 255;
+        else
+            codes[i] = directions[i] == no_flow ? 0 : 1 << directions[i];
     }
     return codes;
 }
@@ -69,13 +67,15 @@ void write_rasters(const Raster& dem, const RasterMeasurement& m, const std::fil
         io::write_raster(folder / name, dem.grid, dem.placement, values, layer);
     };
     write("filled.tif", m.terrain.elevation_m, {.nodata = {}, .description = "conditioned elevation (m)"});
-    write("drainage_area.tif", [&] {
-        std::vector<double> area = m.terrain.drainage_area_m2;
-        for (std::size_t i = 0; i < area.size(); ++i) {
-            if (std::isnan(dem.values[i])) area[i] = dem.values[i];
-        }
-        return area;
-    }(), {.nodata = {}, .description = "drainage area (m2)"});
+    write("drainage_area.tif",
+          [&] {
+              std::vector<double> area = m.terrain.drainage_area_m2;
+              for (std::size_t i = 0; i < area.size(); ++i) {
+                  if (std::isnan(dem.values[i])) area[i] = dem.values[i];
+              }
+              return area;
+          }(),
+          {.nodata = {}, .description = "drainage area (m2)"});
     write("flow_direction.tif", esri_codes(m.directions, dem.values),
           {.type = io::CellType::uint8, .nodata = 255, .description = "D8 direction (ESRI codes, 0 outlet)"});
     const auto& network = m.statistics.network;

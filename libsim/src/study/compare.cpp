@@ -22,15 +22,18 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// What is compared of one terrain, as the summary of `analyze` says it.
 struct Side {
     fs::path path;
-    std::optional<NamedRaster> raster;   ///< still to be measured
+    std::optional<NamedRaster> raster;  ///< still to be measured
     Json summary;
 };
 
 Side load(const fs::path& path, const CompareOptions& options, const Messages& messages) {
     switch (kind_of(path)) {
-        case ResultKind::analyzed: return {path, std::nullopt, read_json(path / "summary.json")};
-        case ResultKind::simulated: return {path, read_dem(path / "elevation.tif", {}, messages), nullptr};
-        case ResultKind::file: break;
+        case ResultKind::analyzed:
+            return {path, std::nullopt, read_json(path / "summary.json")};
+        case ResultKind::simulated:
+            return {path, read_dem(path / "elevation.tif", {}, messages), nullptr};
+        case ResultKind::file:
+            break;
     }
     return {path, read_dem(path, options.read, messages), nullptr};
 }
@@ -46,14 +49,8 @@ double common_threshold(const Side& a, const Side& b, const CompareOptions& opti
     for (const Side* side : {&a, &b}) {
         if (!side->raster) return at(side->summary, "/channels/threshold_area_m2");
     }
-    const auto default_of = [](const NamedRaster& dem) {
-        double area = 0;
-        for (Index node = 0; node < dem.raster.grid.size(); ++node) {
-            if (!std::isnan(dem.raster.values[node])) area += dem.raster.grid.area(node);
-        }
-        return default_channel_area(area);
-    };
-    return std::max(default_of(*a.raster), default_of(*b.raster));
+    return std::max(default_channel_area(data_area(a.raster->raster)),
+                    default_channel_area(data_area(b.raster->raster)));
 }
 
 void measure_side(Side& side, MeasureOptions options, double threshold_m2) {
@@ -128,15 +125,16 @@ double area_between(const Curve& a, const Curve& b) {
 }
 
 Json aspect(const char* name, const char* quantity, double a, double b, double distance, const char* definition) {
-    return {{"name", name},         {"quantity", quantity}, {"a", number(a)},
-            {"b", number(b)},       {"distance", number(distance)}, {"distance_definition", definition},
-            {"scale", nullptr},     {"verdict", "not judged"}};
+    return {{"name", name},     {"quantity", quantity},         {"a", number(a)},
+            {"b", number(b)},   {"distance", number(distance)}, {"distance_definition", definition},
+            {"scale", nullptr}, {"verdict", "not judged"}};
 }
 
 Json slope_area_aspect(const Json& a, const Json& b) {
-    return aspect("slope_area", "theta", at(a, "/slope_area/theta"), at(b, "/slope_area/theta"),
-                  rms_distance(slope_area_curve(a), slope_area_curve(b)),
-                  "root mean square difference of log10 slope between the binned curves over the areas both have (dex)");
+    return aspect(
+        "slope_area", "theta", at(a, "/slope_area/theta"), at(b, "/slope_area/theta"),
+        rms_distance(slope_area_curve(a), slope_area_curve(b)),
+        "root mean square difference of log10 slope between the binned curves over the areas both have (dex)");
 }
 
 Json hypsometry_aspect(const Json& a, const Json& b) {
@@ -148,8 +146,8 @@ Json hypsometry_aspect(const Json& a, const Json& b) {
 Json horton_aspect(const Json& a, const Json& b) {
     double squares = 0;
     int count = 0;
-    for (const char* ratio : {"/horton/RB/regression", "/horton/RL/regression", "/horton/RA/regression",
-                              "/horton/RS/regression"}) {
+    for (const char* ratio :
+         {"/horton/RB/regression", "/horton/RL/regression", "/horton/RA/regression", "/horton/RS/regression"}) {
         const double difference = std::log(at(a, ratio) / at(b, ratio));
         if (!std::isfinite(difference)) continue;
         squares += difference * difference;

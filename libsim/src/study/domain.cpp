@@ -124,7 +124,8 @@ Grid rectangle_grid(const Experiment& e) {
     if (!(rows >= 3 && cols >= 3)) {
         throw Error(fmt::format("a raster mesh of {} x {} cells has no inside: it needs at least 3 x 3", rows, cols));
     }
-    if (rows * cols >= none) throw Error(fmt::format("{} x {} cells are more than 32-bit numbers can count", rows, cols));
+    if (rows * cols >= none)
+        throw Error(fmt::format("{} x {} cells are more than 32-bit numbers can count", rows, cols));
     return plane_grid(static_cast<Index>(rows), static_cast<Index>(cols), e.domain.size_m[0] / cols,
                       e.domain.size_m[1] / rows);
 }
@@ -146,8 +147,12 @@ Domain rectangle_domain(const Experiment& e) {
     if (e.domain.mesh == MeshKind::raster) {
         const Grid grid = rectangle_grid(e);
         domain.positions_m = plane_positions(grid);
-        domain.placement = {.west = 0, .north = height, .cell_width = grid.east_west[0],
-                            .cell_height = grid.north_south[0], .crs_wkt = "", .geographic = false};
+        domain.placement = {.west = 0,
+                            .north = height,
+                            .cell_width = grid.east_west[0],
+                            .cell_height = grid.north_south[0],
+                            .crs_wkt = "",
+                            .geographic = false};
         boundary = terrain::data_edge(grid, std::vector<double>(grid.size(), 0.0));
         domain.topology = grid;
     } else {
@@ -165,7 +170,8 @@ Domain rectangle_domain(const Experiment& e) {
 
 Domain raster_on_catchment(const Experiment& e, const Catchment& c) {
     if (e.domain.nodes || e.domain.spacing_m) {
-        throw Error("domain.nodes and domain.spacing_m do not apply: the cells of a raster mesh on a DEM are the DEM's");
+        throw Error(
+            "domain.nodes and domain.spacing_m do not apply: the cells of a raster mesh on a DEM are the DEM's");
     }
     const Grid& grid = c.raster.grid;
     Domain domain;
@@ -182,8 +188,10 @@ Domain raster_on_catchment(const Experiment& e, const Catchment& c) {
     const double base_level = c.raster.values[c.outlet];
     drive(domain, e, std::move(boundary), base_level);
     for (Index node = 0; node < grid.size(); ++node) {
-        if (std::isnan(c.raster.values[node])) domain.start.elevation_m[node] = nan;
-        else domain.area_m2 += grid.area(node);
+        if (std::isnan(c.raster.values[node]))
+            domain.start.elevation_m[node] = nan;
+        else
+            domain.area_m2 += grid.area(node);
         const bool outlet = domain.setting.boundary[node] == Boundary::base_level;
         if (e.domain.initial == InitialSurface::dem && !outlet) domain.start.elevation_m[node] = c.raster.values[node];
     }
@@ -235,8 +243,8 @@ Domain tin_on_catchment(Experiment e, const Catchment& c) {
         throw Error("domain.nodes and domain.spacing_m say the same thing: give one of them");
     }
     if (!e.domain.nodes && !e.domain.spacing_m) {
-        e.domain.nodes = static_cast<Index>(std::count_if(raster.values.begin(), raster.values.end(),
-                                                          [](double value) { return !std::isnan(value); }));
+        e.domain.nodes = static_cast<Index>(
+            std::count_if(raster.values.begin(), raster.values.end(), [](double value) { return !std::isnan(value); }));
     }
     Domain domain;
     if (!place.geographic) domain.unit_m = raster.grid.east_west[0] / place.cell_width;

@@ -32,8 +32,8 @@ fs::path script() {
 }
 
 struct ProgramResult {
-    int exit_code;      ///< -1: it did not start
-    std::string said;   ///< on its standard error
+    int exit_code;     ///< -1: it did not start
+    std::string said;  ///< on its standard error
 };
 
 std::string read_all(int descriptor) {
@@ -81,9 +81,10 @@ void draw_figures(const std::string& what, const fs::path& folder) {
     const std::string python = named != nullptr ? named : "/usr/bin/python3";
     const ProgramResult result = run_program({python, "-I", script().string(), what, folder.string()});
     if (result.exit_code == 0) return;
-    throw Error(fmt::format("the figures could not be drawn: {} (they need python3-matplotlib and python3-gdal; "
-                            "--no-figures leaves them out)",
-                            result.said.empty() ? "python ended abnormally" : last_line(result.said)));
+    throw Error(
+        fmt::format("the figures could not be drawn: {} (they need python3-matplotlib and python3-gdal; "
+                    "--no-figures leaves them out)",
+                    result.said.empty() ? "python ended abnormally" : last_line(result.said)));
 }
 
 }  // namespace thalweg::study

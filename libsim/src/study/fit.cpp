@@ -63,11 +63,13 @@ Target raster_target(const fs::path& file, const FitOptions& options, const Mess
 
 Target target_of(const fs::path& path, const FitOptions& options, const Messages& messages) {
     switch (kind_of(path)) {
-        case ResultKind::analyzed: return analyzed_target(path);
+        case ResultKind::analyzed:
+            return analyzed_target(path);
         case ResultKind::simulated:
             if (options.from == FitFrom::nodes) return node_target(path);
             return raster_target(path / "elevation.tif", options, messages);
-        case ResultKind::file: break;
+        case ResultKind::file:
+            break;
     }
     return raster_target(path, options, messages);
 }

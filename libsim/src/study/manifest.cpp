@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/study/manifest.hpp"
 
-#include <Eigen/Core>
 #include <fmt/format.h>
 #include <openssl/evp.h>
 #include <tbb/version.h>
+#include <Eigen/Core>
 
 #include <array>
 #include <fstream>
@@ -38,13 +38,12 @@ std::string sha256_of(const std::filesystem::path& path) {
 
 Versions versions() {
     Versions v{.thalweg = THALWEG_VERSION, .commit = THALWEG_COMMIT, .libraries = {}};
-    for (const auto& libraries :
-         {io::library_versions(), mesh::library_versions(), infer::library_versions()}) {
+    for (const auto& libraries : {io::library_versions(), mesh::library_versions(), infer::library_versions()}) {
         v.libraries.insert(v.libraries.end(), libraries.begin(), libraries.end());
     }
     v.libraries.emplace_back("oneTBB", fmt::format("{}.{}", TBB_VERSION_MAJOR, TBB_VERSION_MINOR));
-    v.libraries.emplace_back("Eigen", fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
-                                                  EIGEN_MINOR_VERSION));
+    v.libraries.emplace_back("Eigen",
+                             fmt::format("{}.{}.{}", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION));
     return v;
 }
 

@@ -33,8 +33,10 @@ ChannelStatistics channel_statistics(const channel::StreamNetwork& network, doub
     c.links = network.size();
     std::vector<std::uint8_t> has_upstream(network.size(), 0);
     for (const Index below : network.downstream) {
-        if (below == none) ++c.outlets;
-        else if (!std::exchange(has_upstream[below], std::uint8_t{1})) ++c.junctions;
+        if (below == none)
+            ++c.outlets;
+        else if (!std::exchange(has_upstream[below], std::uint8_t{1}))
+            ++c.junctions;
     }
     for (Index link = 0; link < network.size(); ++link) {
         c.sources += !has_upstream[link];
@@ -83,8 +85,8 @@ std::vector<BasinStatistics> basin_statistics(const RoutedTerrain& terrain, std:
 /// Relief of the largest basin of the statistics, or of everything where there is none: what 2.5 % are taken of.
 double reference_relief(const RasterMeasurement& m, std::span<const double> ground_m, double threshold_m2,
                         terrain::EdgeBasins edge_basins) {
-    const auto basins = terrain::basins(m.terrain.graph, m.terrain.drainage_area_m2, m.terrain.complete, threshold_m2,
-                                        edge_basins);
+    const auto basins =
+        terrain::basins(m.terrain.graph, m.terrain.drainage_area_m2, m.terrain.complete, threshold_m2, edge_basins);
     const auto labels = terrain::basin_labels(m.terrain.graph, std::span(basins).first(basins.empty() ? 0 : 1));
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
     for (const Index node : m.terrain.graph.order) {
@@ -142,7 +144,22 @@ std::vector<channel::SlopeAreaPoint> segments(const RoutedTerrain& carved, Raste
                                         {.drop_m = m.segment_drop_m, .smallest_area_m2 = threshold_m2});
 }
 
+std::vector<Boundary> boundary_of(const Raster& raster, const MeasureOptions& options) {
+    if (!options.catchment_outlet) return terrain::data_edge(raster.grid, raster.values);
+    std::vector<Boundary> boundary(raster.grid.size(), Boundary::interior);
+    boundary[*options.catchment_outlet] = Boundary::base_level;
+    return boundary;
+}
+
 }  // namespace
+
+double data_area(const Raster& raster) {
+    double area = 0;
+    for (Index node = 0; node < raster.grid.size(); ++node) {
+        if (!std::isnan(raster.values[node])) area += raster.grid.area(node);
+    }
+    return area;
+}
 
 double default_channel_area(double area_m2) {
     const double target = 1e-3 * area_m2;
@@ -186,14 +203,13 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
 }
 
 RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& options) {
-    const auto boundary = terrain::data_edge(raster.grid, raster.values);
+    const auto boundary = boundary_of(raster, options);
     RasterMeasurement m;
     RoutedTerrain carved = carved_terrain(raster, boundary, m.conditioning);
     m.carved_elevation_m = carved.elevation_m;
 
     std::vector<double> surface;
-    m.directions =
-        conditioned_directions(raster, boundary, options.conditioning, surface, m.conditioning.flat_cells);
+    m.directions = conditioned_directions(raster, boundary, options.conditioning, surface, m.conditioning.flat_cells);
     m.terrain.graph = terrain::flow_graph(raster.grid, surface, m.directions);
     m.terrain.cell_area_m2 = carved.cell_area_m2;
     m.terrain.drainage_area_m2 = terrain::accumulate(m.terrain.graph, m.terrain.cell_area_m2);

@@ -35,8 +35,8 @@ OutputFolder::OutputFolder(fs::path final, IfPresent if_present) {
     std::error_code problem;
     const fs::file_status status = fs::symlink_status(final_, problem);
     if (fs::exists(status) && if_present == IfPresent::refuse) {
-        throw Error(fmt::format("'{}' exists already; name another folder or use --force to replace it",
-                                final.string()));
+        throw Error(
+            fmt::format("'{}' exists already; name another folder or use --force to replace it", final.string()));
     }
     if (fs::exists(status) && !fs::is_directory(status)) {
         throw Error(fmt::format("'{}' is not a folder, so it is not replaced; name another", final.string()));
@@ -45,7 +45,8 @@ OutputFolder::OutputFolder(fs::path final, IfPresent if_present) {
         throw Error(fmt::format("'{}' holds no results of thalweg, so --force does not replace it", final.string()));
     }
     partial_ = hidden_neighbour(final_, "partial");
-    for (fs::path parent = final_.parent_path(); !parent.empty() && !fs::exists(parent); parent = parent.parent_path()) {
+    for (fs::path parent = final_.parent_path(); !parent.empty() && !fs::exists(parent);
+         parent = parent.parent_path()) {
         created_parents_.push_back(parent);
     }
     fs::create_directories(partial_, problem);

@@ -122,7 +122,7 @@ class Reader {
     }
 
     template <class Whole>
-        requires std::is_unsigned_v<Whole>
+    requires std::is_unsigned_v<Whole>
     void read(const Field& field, const toml::node& node, Whole& member) const {
         const auto number = node.is_number() ? node.value<double>() : std::nullopt;
         if (!number || *number != std::floor(*number)) {
@@ -134,7 +134,7 @@ class Reader {
     }
 
     template <class E>
-        requires std::is_enum_v<E>
+    requires std::is_enum_v<E>
     void read(const Field& field, const toml::node& node, E& member) const {
         const auto text = node.value<std::string>();
         for (const auto& [word, value] : words(E{})) {
@@ -199,15 +199,9 @@ std::string shown(const std::filesystem::path& path) {
 }
 std::string shown(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 template <class Whole>
-    requires std::is_unsigned_v<Whole>
-std::string shown(Whole value) {
-    return fmt::format("{}", value);
-}
+requires std::is_unsigned_v<Whole> std::string shown(Whole value) { return fmt::format("{}", value); }
 template <class E>
-    requires std::is_enum_v<E>
-std::string shown(E value) {
-    return fmt::format("\"{}\"", word_of(value));
-}
+requires std::is_enum_v<E> std::string shown(E value) { return fmt::format("\"{}\"", word_of(value)); }
 
 }  // namespace
 
@@ -310,9 +304,9 @@ std::string experiment_reference() {
         } else if constexpr (!std::is_same_v<T, std::vector<double>>) {
             value = fmt::format("default {}", shown(member));
         }
-        text += fmt::format("  {:<28} {}{}{}{}\n", field.key, field.text,
-                            field.unit.empty() ? "" : fmt::format(" [{}]", field.unit), value.empty() ? "" : "; ",
-                            value);
+        text +=
+            fmt::format("  {:<28} {}{}{}{}\n", field.key, field.text,
+                        field.unit.empty() ? "" : fmt::format(" [{}]", field.unit), value.empty() ? "" : "; ", value);
     });
     return text;
 }

@@ -74,10 +74,8 @@ Json ratio_json(const channel::HortonRatio& ratio) {
 Json slope_area_json(const channel::SlopeArea& s) {
     Json bins = Json::array();
     for (const auto& bin : s.bins) {
-        bins.push_back({{"area_m2", bin.area_m2},
-                        {"slope", bin.slope},
-                        {"slope_se", number(bin.slope_se)},
-                        {"count", bin.count}});
+        bins.push_back(
+            {{"area_m2", bin.area_m2}, {"slope", bin.slope}, {"slope_se", number(bin.slope_se)}, {"count", bin.count}});
     }
     return {{"theta", number(s.theta.value)},
             {"theta_se", number(s.theta.standard_error)},

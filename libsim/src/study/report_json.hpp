@@ -24,12 +24,12 @@ Json interval(const Estimate&);
 
 /// What a terrain was, before anything is measured on it.
 struct TerrainInput {
-    std::string file;            ///< "" where it was not a file
+    std::string file;  ///< "" where it was not a file
     std::string sha256;
     std::string crs;
     bool geographic = false;
-    Index rows = 0, cols = 0;    ///< 0 on a TIN
-    double dx_m = 0, dy_m = 0;   ///< mean size of a cell; 0 on a TIN
+    Index rows = 0, cols = 0;   ///< 0 on a TIN
+    double dx_m = 0, dy_m = 0;  ///< mean size of a cell; 0 on a TIN
     Index valid_cells = 0, nodata_cells = 0;
     double area_m2 = 0;
 };

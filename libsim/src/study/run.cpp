@@ -28,9 +28,10 @@ fs::path step_folder(const fs::path& folder, const char* step) {
 /// The experiment that simulates what was fitted: the study's uplift and the fitted k and m on the DEM's own raster.
 Experiment fitted_experiment(const Experiment& study, const infer::SlopeAreaFit& fit) {
     if (!(fit.k && fit.k->value > 0 && fit.m.value > 0)) {
-        throw Error(fmt::format("the fit gives m = {:.3g}, with which no landscape can be simulated: slopes do not "
-                                "fall downstream in the range of areas (see study.area_min_m2 and study.area_max_m2)",
-                                fit.m.value));
+        throw Error(
+            fmt::format("the fit gives m = {:.3g}, with which no landscape can be simulated: slopes do not "
+                        "fall downstream in the range of areas (see study.area_min_m2 and study.area_max_m2)",
+                        fit.m.value));
     }
     Experiment e = study;
     e.domain.dem = study.study.dem;
@@ -97,14 +98,15 @@ std::string run_study(const Experiment& e, Figures figures, const fs::path& fold
     MeasureOptions options;
     options.channel_area_m2 = e.study.channel_area_m2;
     const NamedRaster dem = read_dem(*e.study.dem, {}, messages);
+    if (!options.channel_area_m2) options.channel_area_m2 = default_channel_area(data_area(dem.raster));
     analyze(dem, options, step_folder(folder, "measure"), messages);
 
     const Catchment catchment = largest_complete_catchment(dem.raster, options);
+    options.catchment_outlet = catchment.outlet;
     NamedRaster basin{catchment.raster, dem.file, dem.sha256, dem.crs_name, {}};
     analyze(basin, options, step_folder(folder, "basin"), messages);
 
-    const FitOutcome fitted =
-        fit(folder / "basin", fit_options(e), step_folder(folder, "fit"), messages);
+    const FitOutcome fitted = fit(folder / "basin", fit_options(e), step_folder(folder, "fit"), messages);
     simulate(fitted_experiment(e, fitted.fit), catchment, step_folder(folder, "simulate"), messages);
 
     const NamedRaster synthetic = read_dem(folder / "simulate/elevation.tif", {}, messages);

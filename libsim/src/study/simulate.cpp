@@ -25,9 +25,7 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 class Stopwatch {
   public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
+    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
 
   private:
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -68,8 +66,7 @@ Outcome step_through_time(const Topology& topology, const evolve::River& river, 
         }
     };
     const evolve::TimeOptions time{e.time.step_yr, e.time.max_steps, e.time.convergence};
-    const evolve::SimulationResult r =
-        evolve::simulate(topology, river, domain.setting, time, domain.start, observe);
+    const evolve::SimulationResult r = evolve::simulate(topology, river, domain.setting, time, domain.start, observe);
     o.steps = r.steps;
     o.time_yr = domain.start.time_yr;
     o.converged = r.stop_reason == evolve::StopReason::converged;
@@ -154,9 +151,14 @@ Table history_table(const std::vector<evolve::StepRecord>& history) {
         seconds.push_back(r.seconds);
     }
     return {.name = "history",
-            .columns = {{"step", step}, {"time_yr", time}, {"lakes", lakes}, {"elevation_max_m", highest},
-                        {"elevation_mean_m", mean}, {"max_rate_m_per_yr", max_rate},
-                        {"mean_rate_m_per_yr", mean_rate}, {"seconds", seconds}},
+            .columns = {{"step", step},
+                        {"time_yr", time},
+                        {"lakes", lakes},
+                        {"elevation_max_m", highest},
+                        {"elevation_mean_m", mean},
+                        {"max_rate_m_per_yr", max_rate},
+                        {"mean_rate_m_per_yr", mean_rate},
+                        {"seconds", seconds}},
             .kind = GeometryKind::no_geometry,
             .geometry = {}};
 }
@@ -242,8 +244,9 @@ Json mass_json(const Outcome& o, std::vector<std::string>& notes) {
         return empty;
     }
     const evolve::MassBalance& m = *o.mass;
-    return {{"uplifted_m3", m.uplifted_m3}, {"eroded_m3", m.eroded_m3},     {"talus_m3", m.talus_m3},
-            {"diffused_m3", 0.0},           {"deposited_m3", 0.0},          {"exported_m3", m.exported_m3},
+    return {{"uplifted_m3", m.uplifted_m3}, {"eroded_m3", m.eroded_m3},
+            {"talus_m3", m.talus_m3},       {"diffused_m3", 0.0},
+            {"deposited_m3", 0.0},          {"exported_m3", m.exported_m3},
             {"stored_m3", m.stored_m3},     {"relative_residual", number(m.relative_residual())}};
 }
 
@@ -256,8 +259,8 @@ TerrainInput input_of(const Domain& domain, const Finished& f) {
     if (const Grid* grid = std::get_if<Grid>(&domain.topology)) {
         input.rows = grid->rows;
         input.cols = grid->cols;
-        input.dx_m = grid->east_west[grid->rows / 2];
-        input.dy_m = grid->north_south[(grid->rows - 1) / 2];
+        input.dx_m = mean(grid->east_west);
+        input.dy_m = mean(grid->north_south);
     }
     return input;
 }
@@ -295,9 +298,8 @@ std::string run(const Topology& topology, const Experiment& e, Domain& domain, d
     const evolve::River river = river_of(e);
     messages.progress(fmt::format("simulating {} nodes", topology.size()));
     const Stopwatch simulating;
-    const Outcome outcome = e.time.solver == Solver::steady
-                                ? solve_directly(topology, river, e, domain)
-                                : step_through_time(topology, river, e, domain, messages);
+    const Outcome outcome = e.time.solver == Solver::steady ? solve_directly(topology, river, e, domain)
+                                                            : step_through_time(topology, river, e, domain, messages);
     const double simulate_seconds = simulating.seconds();
 
     messages.progress("measuring and writing");
@@ -313,8 +315,8 @@ std::string run(const Topology& topology, const Experiment& e, Domain& domain, d
                           {"simulate", simulate_seconds},
                           {"output", output_seconds},
                           {"total", mesh_seconds + simulate_seconds + output_seconds}};
-    summary["seconds_per_node_step"] =
-        simulate_seconds / (static_cast<double>(finished.terrain.graph.order.size()) * std::max<Index>(1, outcome.steps));
+    summary["seconds_per_node_step"] = simulate_seconds / (static_cast<double>(finished.terrain.graph.order.size()) *
+                                                           std::max<Index>(1, outcome.steps));
     std::string text = text_of(summary);
     write_text(folder / "summary.json", text);
     return text;

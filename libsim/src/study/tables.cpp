@@ -67,9 +67,9 @@ Table links_table(const channel::StreamNetwork& network, const PositionOf& posit
         std::vector<Point>& line = table.geometry.emplace_back();
         for (const Index node : network.nodes_of(link)) line.push_back(position(node));
     }
-    table.columns = {{"id", id},           {"downstream", downstream},        {"strahler", strahler},
-                     {"shreve", shreve},   {"length_m", network.length_m},    {"drop_m", network.drop_m},
-                     {"slope", slope},     {"area_m2", network.area_m2}};
+    table.columns = {{"id", id},         {"downstream", downstream},     {"strahler", strahler},
+                     {"shreve", shreve}, {"length_m", network.length_m}, {"drop_m", network.drop_m},
+                     {"slope", slope},   {"area_m2", network.area_m2}};
     return table;
 }
 
@@ -86,8 +86,8 @@ Table junctions_table(const channel::StreamNetwork& network, const PositionOf& p
         shreve.push_back(meeting.shreve);
         table.geometry.push_back({position(node)});
     }
-    table.columns = {{"kind", kind}, {"inflows", inflows}, {"downstream", downstream}, {"strahler", strahler},
-                     {"shreve", shreve}};
+    table.columns = {
+        {"kind", kind}, {"inflows", inflows}, {"downstream", downstream}, {"strahler", strahler}, {"shreve", shreve}};
     return table;
 }
 

@@ -15,7 +15,7 @@ namespace thalweg::study {
 /// A DEM cut down to one catchment: NaN outside, cropped to its bounding box with a margin of one cell.
 struct Catchment {
     Raster raster;
-    Index outlet;        ///< node of `raster` where its water leaves
+    Index outlet;  ///< node of `raster` where its water leaves
 };
 
 /// The largest complete catchment of a DEM. Throws Error if the DEM holds none.
@@ -24,13 +24,13 @@ Catchment largest_complete_catchment(const Raster&, const MeasureOptions&);
 /// Where a simulation happens: nodes with their geometry, drivers and start, and their place on the earth.
 struct Domain {
     std::variant<Grid, Mesh> topology;
-    Placement placement;                ///< of the grid; of a mesh only its coordinate system
-    double unit_m = 1;                  ///< a mesh's x and y (m) divided by this are map coordinates
-    std::vector<Point> positions_m;     ///< of every node, on a plane
-    double extent_m = 0;                ///< longer side
-    double area_m2 = 0;                 ///< of the domain, computed apart from the cells where that is possible
+    Placement placement;             ///< of the grid; of a mesh only its coordinate system
+    double unit_m = 1;               ///< a mesh's x and y (m) divided by this are map coordinates
+    std::vector<Point> positions_m;  ///< of every node, on a plane
+    double extent_m = 0;             ///< longer side
+    double area_m2 = 0;              ///< of the domain, computed apart from the cells where that is possible
     evolve::Setting setting;
-    evolve::Landscape start;            ///< NaN where a grid's cell lies outside
+    evolve::Landscape start;  ///< NaN where a grid's cell lies outside
 };
 
 /// The domain that an experiment describes. Throws Error where its parameters contradict each other.

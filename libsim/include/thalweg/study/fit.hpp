@@ -12,8 +12,8 @@ namespace thalweg::study {
 
 /// Which slopes of a simulation are fitted.
 enum class FitFrom {
-    nodes,   ///< of the mesh, exact
-    raster   ///< of its elevation.tif, measured like any DEM
+    nodes,  ///< of the mesh, exact
+    raster  ///< of its elevation.tif, measured like any DEM
 };
 
 struct FitOptions {
@@ -23,8 +23,8 @@ struct FitOptions {
     MeasureOptions measure;
 };
 
-/// Fits k and m to the slope–area curve of a DEM, an analyze folder or a simulate folder, and writes fit.json and fit.csv
-/// into an existing folder. Returns the text of fit.json. What a simulation was made with is never looked at.
+/// Fits k and m to the slope–area curve of a DEM, an analyze folder or a simulate folder, and writes fit.json and
+/// fit.csv into an existing folder. Returns the text of fit.json. What a simulation was made with is never looked at.
 struct FitOutcome {
     infer::SlopeAreaFit fit;
     std::string json;

@@ -14,7 +14,7 @@ std::string sha256_of(const std::filesystem::path&);
 /// Version of thalweg, its commit, and those of the libraries it stands on.
 struct Versions {
     std::string thalweg;
-    std::string commit;   ///< "unknown" outside a repository
+    std::string commit;  ///< "unknown" outside a repository
     std::vector<std::pair<std::string, std::string>> libraries;
 };
 Versions versions();

@@ -23,17 +23,19 @@ enum class Conditioning {
 
 struct MeasureOptions {
     Conditioning conditioning = Conditioning::fill;
-    std::optional<double> channel_area_m2;                        ///< default: 0.1 % of the area, rounded to 1-2-5
+    std::optional<double> channel_area_m2;  ///< default: 0.1 % of the area, rounded to 1-2-5
     terrain::EdgeBasins edge_basins = terrain::EdgeBasins::drop;
+    std::optional<Index> catchment_outlet{};  ///< the raster is one catchment that leaves here: its
+                                              ///< rim is a divide, not a cut
 };
 
 /// A terrain once it is routed: a DEM, a simulated mesh and a grown network look the same from here on.
 struct RoutedTerrain {
     terrain::FlowGraph graph;
-    std::vector<double> elevation_m;           ///< on which the flow falls (filled or carved); NaN: no data
+    std::vector<double> elevation_m;  ///< on which the flow falls (filled or carved); NaN: no data
     std::vector<double> cell_area_m2;
     std::vector<double> drainage_area_m2;
-    std::vector<std::uint8_t> complete;        ///< 1 where the whole upslope area is known
+    std::vector<std::uint8_t> complete;  ///< 1 where the whole upslope area is known
 };
 
 struct BasinStatistics {
@@ -46,9 +48,9 @@ struct BasinStatistics {
 /// Channels and what is counted on them. Lengths in metres, areas in m².
 struct ChannelStatistics {
     double threshold_area_m2;
-    double basin_area_m2;           ///< area of the basins used
-    double share_used;              ///< of the channel nodes, in complete catchments
-    Index nodes;                    ///< channel nodes used
+    double basin_area_m2;  ///< area of the basins used
+    double share_used;     ///< of the channel nodes, in complete catchments
+    Index nodes;           ///< channel nodes used
     Index sources, links, junctions, outlets;
     double total_length_m;
     double drainage_density_per_m;  ///< total length over the area of the basins used
@@ -65,21 +67,21 @@ struct Statistics {
     std::vector<channel::SlopeAreaPoint> slope_area_points;
     std::vector<BasinStatistics> basins;
     channel::StreamNetwork network;
-    std::vector<Index> basin_of;    ///< number of each node's basin, `none` outside
+    std::vector<Index> basin_of;  ///< number of each node's basin, `none` outside
 };
 
 /// The one pipeline behind analyze, simulate and compare: `slopes` are the slope–area points measured on the terrain in
-/// the way that suits it (segments of carved profiles on a raster, nodes on a mesh); `ground_m` is the surface before any
-/// conditioning, of which the hypsometry and the relief are taken.
+/// the way that suits it (segments of carved profiles on a raster, nodes on a mesh); `ground_m` is the surface before
+/// any conditioning, of which the hypsometry and the relief are taken.
 Statistics measure(const RoutedTerrain&, std::span<const double> ground_m, const MeasureOptions&,
                    std::vector<channel::SlopeAreaPoint> slopes);
 
 /// How a DEM was made to drain.
 struct ConditioningReport {
-    Index pits = 0;             ///< lakes: pits (or flats) that drained nowhere
+    Index pits = 0;  ///< lakes: pits (or flats) that drained nowhere
     Index cells_changed = 0;
-    double volume_m3 = 0;       ///< filled, or cut away
-    Index flat_cells = 0;       ///< that needed a direction by the flat rule
+    double volume_m3 = 0;  ///< filled, or cut away
+    Index flat_cells = 0;  ///< that needed a direction by the flat rule
 };
 
 /// A measured DEM with the rasters that the measuring made.
@@ -89,14 +91,17 @@ struct RasterMeasurement {
     ConditioningReport conditioning;
     Index valid_cells = 0;
     double area_m2 = 0;
-    std::vector<double> carved_elevation_m;    ///< along which slopes are measured
-    double segment_drop_m = 0;                 ///< of the slope–area segments
+    std::vector<double> carved_elevation_m;  ///< along which slopes are measured
+    double segment_drop_m = 0;               ///< of the slope–area segments
     double vertical_quantum_m = 0;
     Statistics statistics;
 };
 
 /// Conditions, routes and measures a DEM. Throws Error when there is nothing to measure.
 RasterMeasurement measure_raster(const Raster&, const MeasureOptions&);
+
+/// Area of the cells with data, m².
+double data_area(const Raster&);
 
 /// The threshold of channels by default: 0.1 % of the area rounded to 1, 2 or 5 times a power of ten.
 double default_channel_area(double area_m2);

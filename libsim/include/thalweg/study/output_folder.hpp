@@ -10,8 +10,8 @@ namespace thalweg::study {
 enum class IfPresent { refuse, replace };
 
 /// A folder that appears whole or not at all: files are written into a hidden neighbour, which takes the final name in
-/// one rename on `commit`. Without a commit nothing is left behind, and what stood there before is still there. A folder
-/// that holds something else than our results is never replaced.
+/// one rename on `commit`. Without a commit nothing is left behind, and what stood there before is still there. A
+/// folder that holds something else than our results is never replaced.
 class OutputFolder {
   public:
     /// Throws Error if `final` exists and may not be replaced, or its parent cannot be written.
@@ -29,7 +29,7 @@ class OutputFolder {
 
     std::filesystem::path final_;
     std::filesystem::path partial_;
-    std::vector<std::filesystem::path> created_parents_;   ///< innermost first
+    std::vector<std::filesystem::path> created_parents_;  ///< innermost first
     bool committed_ = false;
 };
 

@@ -28,12 +28,12 @@ enum class FitMethod { slope_area };
 /// `describe` below: reading, overriding, writing, `--help` and the reference page all follow from there.
 struct Experiment {
     std::uint64_t seed = 1;
-    std::optional<OutletRule> outlets;                ///< default: `dem` where the domain is a DEM's basin, else `all`
+    std::optional<OutletRule> outlets;  ///< default: `dem` where the domain is a DEM's basin, else `all`
     struct {
         std::vector<double> size_m;
         std::optional<Index> nodes;
         std::optional<double> spacing_m;
-        std::optional<MeshKind> mesh;                    ///< default: TIN; in a study, the DEM's own raster
+        std::optional<MeshKind> mesh;  ///< default: TIN; in a study, the DEM's own raster
         std::optional<std::filesystem::path> dem;
         InitialSurface initial = InitialSurface::noise;
     } domain;
@@ -77,8 +77,8 @@ struct Experiment {
 
 /// What a parameter means: shown by `--help`, written beside its value, checked on reading.
 struct Field {
-    std::string_view key;                                          ///< "river.k"
-    std::string_view unit;                                         ///< "" where it has none
+    std::string_view key;   ///< "river.k"
+    std::string_view unit;  ///< "" where it has none
     std::string_view text;
     double smallest = -std::numeric_limits<double>::infinity();
     double largest = std::numeric_limits<double>::infinity();
@@ -139,13 +139,12 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"study.channel_area_m2", "m2", "drainage area where channels begin", 0, infinity, true},
           e.study.channel_area_m2);
     visit(Field{"study.area_min_m2", "m2", "smallest drainage area in the fit", 0}, e.study.area_min_m2);
-    visit(Field{"study.area_max_m2", "m2", "largest drainage area in the fit", 0, infinity, true},
-          e.study.area_max_m2);
+    visit(Field{"study.area_max_m2", "m2", "largest drainage area in the fit", 0, infinity, true}, e.study.area_max_m2);
 }
 
 /// Reads an experiment file (TOML), applies overrides of the form "river.k=2e-5" and checks every value. Paths are
-/// relative to the file. Throws Error, one sentence: no file, not TOML (with the line), an unknown key (with the nearest
-/// known one), a wrong type, a value out of range.
+/// relative to the file. Throws Error, one sentence: no file, not TOML (with the line), an unknown key (with the
+/// nearest known one), a wrong type, a value out of range.
 Experiment read_experiment(const std::filesystem::path&, const std::vector<std::string>& overrides = {});
 
 /// The experiment as TOML with every value and unit, such that reading it again gives the same experiment.

@@ -11,10 +11,11 @@ namespace thalweg::study {
 
 enum class Figures { draw, leave_out };
 
-/// The whole study that an experiment describes, one folder per step: `measure` (the DEM), `basin` (its largest complete
-/// catchment alone), `fit` (k and m of that), `simulate` (a landscape on the same outline with them), `synthetic` (that
-/// landscape measured like a DEM), `compare` (basin and synthetic); then manifest.json and, with figures, report.html.
-/// Returns the text of manifest.json. Throws Error where study.dem or study.uplift_m_per_yr is missing.
+/// The whole study that an experiment describes, one folder per step: `measure` (the DEM), `basin` (its largest
+/// complete catchment alone), `fit` (k and m of that), `simulate` (a landscape on the same outline with them),
+/// `synthetic` (that landscape measured like a DEM), `compare` (basin and synthetic); then manifest.json and, with
+/// figures, report.html. Returns the text of manifest.json. Throws Error where study.dem or study.uplift_m_per_yr is
+/// missing.
 std::string run_study(const Experiment&, Figures, const std::filesystem::path& folder, const Messages&);
 
 }  // namespace thalweg::study

@@ -8,8 +8,8 @@
 
 namespace thalweg::study {
 
-/// Runs the simulation that an experiment describes and writes summary.json, elevation.tif, drainage_area.tif, the CSVs,
-/// network.gpkg and the resolved experiment.toml into an existing folder. Returns the text of summary.json.
+/// Runs the simulation that an experiment describes and writes summary.json, elevation.tif, drainage_area.tif, the
+/// CSVs, network.gpkg and the resolved experiment.toml into an existing folder. Returns the text of summary.json.
 /// Throws Error where river.k or river.m is missing or the domain cannot be made.
 std::string simulate(const Experiment&, const std::filesystem::path& folder, const Messages&);
 
