@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "support/steady_landscape.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/random.hpp"
 
@@ -324,4 +325,55 @@ TEST_CASE("What cannot be fitted is refused in one sentence") {
     CHECK(message(bins, {.smallest_se_dex = 0}).find("dex") != std::string::npos);
     CHECK(message({bins[0], bins[0], bins[0]}, {}).find("widen the range") != std::string::npos);
     CHECK(message(bins, {}).empty());
+}
+
+TEST_CASE("A steady landscape gives back k and m from its nodes and from its DEM") {
+    const Grid grid = plane_grid(160, 160, 90, 90);
+    const double uplift = 4e-4;
+    for (const double n : {1.0, 1.5}) {
+        for (const double m : {0.35, 0.5}) {
+            const support::SteadyLaw law{.theta = m / n};
+            const auto height = support::steady_raster(grid, law, 5);
+            const support::RoutedDem dem = support::routed_dem(grid, height);
+            const double truth = uplift / std::pow(law.slope_at_reference, n);  // k·A0^m
+            const auto fit_of = [&](const std::vector<channel::SlopeAreaPoint>& points) {
+                return fit_slope_area(channel::slope_area_bins(points), {.n = n, .uplift_m_per_yr = uplift});
+            };
+            const auto at_reference = [&](const SlopeAreaFit& fit) {
+                return fit.k->value * std::pow(law.reference_area_m2, fit.m.value);
+            };
+            const SlopeAreaFit nodes = fit_of(channel::node_slopes(dem.graph, dem.area_m2, height));
+            CHECK(std::abs(nodes.m.value - m) < 1e-3);
+            CHECK(at_reference(nodes) == Approx(truth).epsilon(0.01));
+            const double relief = *std::ranges::max_element(height);
+            const SlopeAreaFit raster = fit_of(channel::fixed_drop_segments(
+                dem.graph, dem.area_m2, dem.carved_m, {}, {.drop_m = 0.025 * relief, .smallest_area_m2 = 2e5}));
+            CHECK(std::abs(raster.m.value - m) < 0.002);
+            CHECK(at_reference(raster) == Approx(truth).epsilon(0.005));
+            CHECK(covers(raster.m, m));
+        }
+    }
+}
+
+TEST_CASE("The interval covers the truth when the slopes of a landscape's nodes are measured with scatter") {
+    const Grid grid = plane_grid(96, 96, 90, 90);
+    const support::SteadyLaw law;
+    const auto height = support::steady_raster(grid, law, 9);
+    const support::RoutedDem dem = support::routed_dem(grid, height);
+    const auto exact = channel::node_slopes(dem.graph, dem.area_m2, height);
+    constexpr int trials = 300;
+    int m_covered = 0, ks_covered = 0;
+    for (int trial = 0; trial < trials; ++trial) {
+        Random random(41, static_cast<std::uint32_t>(trial));
+        auto points = exact;
+        for (channel::SlopeAreaPoint& point : points) point.slope *= std::exp(0.8 * random.normal());
+        const SlopeAreaFit fit = fit_slope_area(channel::slope_area_bins(points), {.area_min_m2 = 1e5});
+        m_covered += covers(fit.m, law.theta);
+        ks_covered += covers(fit.ks, law.slope_at_reference * std::pow(law.reference_area_m2, law.theta));
+    }
+    CAPTURE(m_covered, ks_covered);
+    for (const int covered : {m_covered, ks_covered}) {
+        CHECK(covered >= 0.90 * trials);
+        CHECK(covered <= 0.98 * trials);
+    }
 }

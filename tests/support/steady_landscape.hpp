@@ -19,6 +19,7 @@ struct SteadyLaw {
     double theta = 0.5;
     double slope_at_reference = 0.08;
     double reference_area_m2 = 3e6;
+    double scatter = 0;  ///< standard deviation of ln S from cell to cell, fixed in place (erodibility)
     double slope(double area_m2) const { return slope_at_reference * std::pow(area_m2 / reference_area_m2, -theta); }
 };
 
@@ -33,6 +34,9 @@ inline std::vector<double> steady_raster(const Grid& grid, const SteadyLaw& law,
         if (rim) boundary[node] = Boundary::base_level;
         if (!rim) height[node] = uniform_at(seed, 0, node);
     }
+    std::vector<double> local(grid.size(), 1);
+    Random random(seed, 1);
+    for (double& each : local) each = std::exp(law.scatter * random.normal());
     FlowDirections previous;
     for (int sweep = 0; sweep < 400; ++sweep) {
         FlowDirections directions = terrain::route(grid, height, boundary);
@@ -42,7 +46,8 @@ inline std::vector<double> steady_raster(const Grid& grid, const SteadyLaw& law,
         const auto area = terrain::accumulate(graph, terrain::cell_areas(grid));
         for (const Index node : graph.order) {
             const Index receiver = graph.receiver[node];
-            if (receiver != none) height[node] = height[receiver] + graph.length[node] * law.slope(area[node]);
+            if (receiver == none) continue;
+            height[node] = height[receiver] + graph.length[node] * law.slope(area[node]) * local[node];
         }
         previous = std::move(directions);
     }

@@ -44,7 +44,7 @@ std::vector<Index> main_donors(const Profile& profile) {
 /// Cuts one reach (steps between two jumps of the area) into pieces that fall `drop_m` or more, or keeps it whole if it
 /// falls less; what is left over at the end goes to the last piece. So every step of a reach is in a piece, steep
 /// or not, and as pieces count by their length, no kind of stretch is preferred. (Cutting at the node nearest to whole
-/// multiples of the drop was tried: with vertical noise its shorter pieces made k·A0^m three to five times worse.)
+/// multiples of the drop was tried: with vertical noise its shorter pieces made k·A0^m about four times worse.)
 void cut_reach(const Profile& profile, std::span<const Index> reach, const SegmentOptions& options,
                std::vector<SlopeAreaPoint>& points) {
     double total = 0;

@@ -24,13 +24,15 @@ struct SlopeAreaFitOptions {
 
 /// k and m with their uncertainties (k in m^(1−2m)/yr).
 ///
-/// Errors. A bin weighs by the error of its mean (`channel::bin_errors`: floored, pooled for single points). Residuals
+/// Errors. A bin weighs by the error of its mean (`channel::bin_errors`: moderated and floored). Residuals
 /// beyond 1.345 robust standard deviations (1.4826·median |r|, at least the stated errors) count linearly (Huber 1964).
 /// Standard errors come from Ceres' covariance at the solution, times √max(1, `reduced_chi2`): scatter larger than the
 /// bins' errors explain widens them, smaller scatter does not narrow them. 95 % intervals use Student's t with
 /// bins − parameters degrees of freedom; those of ks, k/u, k and k·A0^m are taken in the logarithm, so they are
 /// lopsided and positive, and their standard errors are value × that of the logarithm. The uplift's sd/u adds in
-/// quadrature to ln k and ln(k·A0^m). Bins are taken as independent.
+/// quadrature to ln k and ln(k·A0^m). Bins are taken as independent, and slopes as a fair sample: where erodibility
+/// scatters from cell to cell, rivers seek weak rock, and m comes out too low by more than its error (by 0.01, 0.03 and
+/// 0.05 for a scatter of ln S of 0.1, 0.2 and 0.4 in each cell, tried on 64² steady rasters).
 struct SlopeAreaFit {
     double n;
     Estimate theta, ks;            ///< S = ks·A^(−θ); ks in m^(2θ)
