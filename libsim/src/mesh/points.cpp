@@ -240,7 +240,8 @@ PointSet poisson_disk_count(const Polygon& outline, Index count, std::uint64_t s
         if (extra == 0 && missing > 0 && missing <= largest_extra(attempt, count)) {
             extra = static_cast<int>(missing);
         } else {
-            spacing *= std::pow(ratio, attempt < 4 ? 0.5 : 0.2 + 0.6 * jitter.uniform());
+            spacing *= std::pow(ratio, 0.5);
+            if (attempt >= 4) spacing *= 0.95 + 0.1 * jitter.uniform();
             extra = 0;
         }
     }
