@@ -37,10 +37,10 @@ void compare_row(const double* here, Index cols, std::uint8_t* level, std::uint8
     const double* below = here + cols;
     for (Index c = 1; c + 1 < cols; ++c) {
         const double height = here[c];
-        double bits = 0;
+        std::int64_t bits = 0;
         double highest = height;
-        const auto offer = [&](double neighbor, double bit) {
-            bits += neighbor == height ? bit : 0;
+        const auto offer = [&](double neighbor, std::int64_t bit) {
+            bits |= -static_cast<std::int64_t>(neighbor == height) & bit;
             highest = neighbor > highest ? neighbor : highest;
         };
         offer(here[c + 1], 1);
@@ -51,8 +51,8 @@ void compare_row(const double* here, Index cols, std::uint8_t* level, std::uint8
         offer(above[c - 1], 32);
         offer(above[c], 64);
         offer(above[c + 1], 128);
-        level[c] = static_cast<std::uint8_t>(static_cast<int>(bits));
-        state[c] = static_cast<std::uint8_t>(static_cast<int>(highest > height ? double{has_higher} : 0.0));
+        level[c] = static_cast<std::uint8_t>(bits);
+        state[c] = static_cast<std::uint8_t>(-static_cast<std::int64_t>(highest > height) & has_higher);
     }
 }
 
