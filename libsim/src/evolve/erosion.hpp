@@ -6,6 +6,7 @@
 #include <span>
 
 #include "evolve/compensated_sum.hpp"
+#include "evolve/drainage.hpp"
 #include "evolve/edges.hpp"
 #include "thalweg/evolve/river.hpp"
 #include "thalweg/evolve/slope.hpp"
@@ -71,9 +72,7 @@ struct StepSums {
     }
 };
 
-/// The sweep jumps about in memory, but its list says where it will be: this many nodes ahead are asked for early.
-inline constexpr std::size_t ahead = 24;
-
+/// Asks for what the sweep will need of a node.
 inline void fetch(Index node, const Drainage& drainage, const Setting& setting, std::span<const double> elevation_m) {
     __builtin_prefetch(&drainage.directions[node]);
     __builtin_prefetch(&drainage.area_m2[node]);
