@@ -102,26 +102,37 @@ def _draw_bins(axes, side):
 def fitted_curve(fit, table):
     """The fitted line and its 95 % band, as area, slope, low, high; None without a fit.
 
-    About the mean of ln A, weighted as the fit does, level and slope of the line are uncorrelated: variance of the level
-    = (reported variance of θ)·(weighted variance of ln A), whatever scale the fit gave its errors.
+    At the fit's reference area (the weighted mean of ln A) the line's level and its slope θ are uncorrelated, so that the
+    half widths of their 95 % intervals add as squares.
     """
-    theta, error = fit.get("theta"), fit.get("theta_se")
     area, fitted = (np.asarray(table.get(name, ()), dtype=float) for name in ("area_m2", "fitted_slope"))
     usable = (area > 0) & (fitted > 0)
-    if theta is None or usable.sum() < 2:
+    if fit.get("theta") is None or usable.sum() < 2:
         return None
-    area, fitted = area[usable], fitted[usable]
-    slope, slope_error = (np.asarray(table.get(name, fitted), dtype=float)[:usable.size] for name in ("slope", "slope_se"))
-    relative = np.maximum(np.nan_to_num((slope_error / slope)[usable] if "slope_se" in table else np.zeros(area.size)),
-                          0.01 * np.log(10))
-    weight = 1 / relative**2
-    centre = np.average(np.log(area), weights=weight)
-    spread = np.average((np.log(area) - centre)**2, weights=weight)
-    order = np.argsort(area)
-    x = np.linspace(np.log(area[order[0]]), np.log(area[order[-1]]), 60)
-    level = np.interp(x, np.log(area[order]), np.log(fitted[order]))
-    half = 1.96 * (error or 0.0) * np.sqrt(spread + (x - centre)**2)
-    return np.exp(x), np.exp(level), np.exp(level - half), np.exp(level + half)
+    order = np.argsort(area[usable])
+    log_area, log_slope = np.log(area[usable])[order], np.log(fitted[usable])[order]
+    count = np.asarray(table.get("count", np.ones(area.size)), dtype=float)[usable][order]
+    middle = fit.get("reference_area_m2")
+    centre = np.log(middle) if middle else np.average(log_area, weights=count)
+    steepness = _half_width(fit, "theta")
+    level = _level_half_width(fit, steepness * np.sqrt(np.average((log_area - centre)**2, weights=count)))
+    x = np.linspace(log_area[0], log_area[-1], 60)
+    line = np.interp(x, log_area, log_slope)
+    half = np.hypot(level, steepness * (x - centre))
+    return np.exp(x), np.exp(line), np.exp(line - half), np.exp(line + half)
+
+
+def _half_width(fit, key):
+    low, high = fit.get(key + "_ci95") or (None, None)
+    return 0.5 * (high - low) if low is not None and high is not None else 1.96 * (fit.get(key + "_se") or 0.0)
+
+
+def _level_half_width(fit, otherwise):
+    """Half width of ln S at the reference area: that of ln(k·A0^m)/n, as long as the error of the uplift is not in it."""
+    low, high = fit.get("k_at_reference_area_ci95") or (None, None)
+    if fit.get("uplift_sd_m_per_yr") or not (low and high and fit.get("n")):
+        return otherwise
+    return 0.5 * np.log(high / low) / fit["n"]
 
 
 def draw_fitted_line(axes, fit, color):
@@ -135,7 +146,9 @@ def law_label(theta, error):
     """The legend's words for S ∝ A^−θ."""
     if theta is None:
         return "fitted line"
-    return f"fit: θ = {theta:.3f}" + (f" ± {error:.3f}" if error else "")
+    if not error:
+        return f"fit: θ = {theta:.3f}"
+    return f"fit: θ = {theta:.3f} ± " + (f"{error:.3f}" if error >= 0.0005 else "< 0.001")
 
 
 def summary_line(side):
@@ -190,7 +203,7 @@ def draw_horton_panels(axes, sides):
 
 
 def draw_history(height_axes, rate_axes, history):
-    """Heights and the largest rate of change against time (or against the step, where a run has no time)."""
+    """Heights and rates of change against time (or against the step, where a run has no time)."""
     time = np.asarray(history.get("time_yr", ()), dtype=float) / 1e6
     label = "Time (Myr)"
     if time.size == 0 or not np.isfinite(time).all() or np.ptp(time) == 0:
@@ -198,19 +211,29 @@ def draw_history(height_axes, rate_axes, history):
     for name, word, line in (("elevation_max_m", "highest", "-"), ("elevation_mean_m", "mean", (0, (5, 1.6)))):
         if name in history and time.size:
             height_axes.plot(time, history[name], color=style.SYNTHETIC, linestyle=line, label=word)
-    rate = np.asarray(history.get("max_rate_m_per_yr", ()), dtype=float) * 1000
-    usable = rate > 0
-    if usable.any():
-        rate_axes.plot(time[usable], rate[usable], color=style.SYNTHETIC)
+    drawn = [_draw_rate(rate_axes, time, history.get(name), word, line)
+             for name, word, line in (("max_rate_m_per_yr", "largest", "-"), ("mean_rate_m_per_yr", "mean", (0, (5, 1.6))))]
+    if any(drawn):
         rate_axes.set_yscale("log")
+        rate_axes.legend(loc="best")
     else:
         absent(rate_axes, "no rates of change recorded")
     height_axes.set(ylabel="Elevation (m)", xlabel=label)
-    rate_axes.set(ylabel="Largest rate of change (mm/yr)", xlabel=label)
+    rate_axes.set(ylabel="Rate of change (mm/yr)", xlabel=label)
     if time.size:
         height_axes.legend(loc="lower right")
     else:
         absent(height_axes, "no history recorded")
+
+
+def _draw_rate(axes, time, rate, word, line):
+    """True where there was something to draw on a logarithmic axis."""
+    rate = np.asarray(rate if rate is not None else (), dtype=float) * 1000
+    usable = rate > 0
+    if not usable.any():
+        return False
+    axes.plot(time[usable], rate[usable], color=style.SYNTHETIC, linestyle=line, label=word)
+    return True
 
 
 def hypsometry(sides):

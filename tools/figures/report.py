@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """report.html of a study: one file that opens anywhere, without network or scripts."""
 import base64
+import math
 import os
 from html import escape
 
@@ -60,7 +61,7 @@ def terrains(study):
     synthetic = (study.step("simulate/elevation.tif"), study.step(f"{study.synthetic_step}/network.gpkg"), "Synthetic")
     overview, lowest = maps.single(*whole, studied=real[1] if study.real_step == "basin" else None)
     both = maps.pair(real, synthetic)
-    threshold = number(get(study.measure, "channels.threshold_area_m2", 0) / 1e6)
+    threshold = plain(get(study.measure, "channels.threshold_area_m2", 0) / 1e6)
     rivers = "all rivers" if lowest == 1 else f"rivers of Strahler order {lowest} and above"
     return (picture(style.png(both, style.DPI), "png",
                     "Two shaded relief maps beside each other: the real terrain and the simulated one, with their rivers.",
@@ -85,7 +86,7 @@ def slopes(study):
     return picture(style.svg(drawing), "svg+xml",
                    f"Slope against drainage area on logarithmic axes; concavity {theta[0]} real, {theta[1]} synthetic.",
                    "<b>Figure 3.</b> Slope against drainage area: single measurements (dots), means of bins of a tenth of a "
-                   "decade with their standard errors, and the fitted law <i>S</i> = <i>k</i><sub>s</sub> <i>A</i>"
+                   "decade with their standard errors (on a grid longer pieces of river count more), and the fitted law <i>S</i> = <i>k</i><sub>s</sub> <i>A</i>"
                    f"<sup>−θ</sup> (line; the real one with its 95 % band).{law}")
 
 
@@ -201,9 +202,13 @@ def fit(study):
 
 
 def _two_errors(value, error, digits):
+    """The interval of a quantity that cannot be negative: normal in its logarithm."""
     if not isinstance(value, (int, float)) or not isinstance(error, (int, float)):
         return ""
-    return interval([value - 1.96 * error, value + 1.96 * error], digits)
+    if value <= 0:
+        return interval([value - 1.96 * error, value + 1.96 * error], digits)
+    factor = math.exp(1.96 * error / value)
+    return interval([value / factor, value * factor], digits)
 
 
 def _fit_words(content):
@@ -273,7 +278,7 @@ def _aspect_cell(study, aspect, key, footnotes):
 
 def simulation(study):
     run = study.simulate
-    words = summary_text.run_sentence(run)
+    words = summary_text.run_sentence(run, get(study.experiment, "time.solver"))
     if not study.history:
         return words
     return words + picture(style.svg(curves.history(study.history)), "svg+xml",
@@ -304,15 +309,15 @@ def provenance(study):
              if not key.lower().startswith(UNSHOWN)]
     text = _experiment_text(study)
     resolved = f"<details><summary>The experiment, every value resolved</summary><pre>{text}</pre></details>" if text else ""
-    return (table(["", ""], rows, "text") + "<p>Every file and its checksum stand in <code>manifest.json</code>; "
-            "<code>thalweg verify</code> repeats the study from it.</p>" + resolved)
+    return (table(["", ""], rows, "text") + "<p>Every file and its checksum stand in <code>manifest.json</code>.</p>" + resolved)
 
 
 def _value(key, value):
     if key in ("command", "argv") and isinstance(value, list):
         return f"<code>{escape(' '.join(map(str, value)))}</code>"
     if isinstance(value, list):
-        return "<br>".join(show(each) for each in value)
+        separator = "<br>" if any(isinstance(each, dict) for each in value) else ", "
+        return separator.join(show(each) for each in value)
     return show(value, 8)
 
 

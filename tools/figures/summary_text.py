@@ -20,7 +20,7 @@ def measured(study):
     words = f"The terrain in <i>{escape(study.name())}</i>" + (f" ({ground})" if ground else "") + " was measured"
     channels = study.real.terrain.get("channels") or {}
     rivers = _clause(channels.get("links"), lambda v: f" with {number(v)} river links from "
-                     f"{number((channels.get('threshold_area_m2') or 0) / 1e6)} km² of drainage area on")
+                     f"{plain((channels.get('threshold_area_m2') or 0) / 1e6)} km² of drainage area on")
     if study.real_step != "basin":
         return words + rivers + "."
     area = study.value(0, "input.area_m2")[0]
@@ -70,10 +70,10 @@ def headline(study):
             "&ensp;<span class=\"synthetic\">▲ synthetic</span> – the same colours and marks throughout.</p>")
 
 
-def run_sentence(run):
+def run_sentence(run, solver):
     """How the simulation went."""
     nodes = _clause(run.get("nodes"), lambda v: f"{number(v)} nodes, ")
-    steps = _clause(run.get("steps"), lambda v: f"{number(v)} steps")
+    steps = _clause(run.get("steps"), lambda v: f"{number(v)} {'sweeps of the steady solver' if solver == 'steady' else 'steps'}")
     time = _clause(run.get("time_yr"), lambda v: f" ({quantity(v / 1e6, 'Myr')})" if v else "")
     why = _clause(run.get("stop_reason"), lambda v: f": {escape(str(v))}")
     state = {True: "converged", False: "did not converge"}.get(run.get("converged"), "ended")

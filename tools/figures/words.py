@@ -84,8 +84,9 @@ class Footnotes:
 
 def table(head, rows, css=""):
     """Rows of HTML cells; a row of one cell is a heading over the rows that follow."""
-    lines = [f'<div class="scroll"><table class="{css}"><thead><tr>',
-             *(f'<th scope="col">{cell}</th>' for cell in head), "</tr></thead><tbody>"]
+    titles = "".join(f'<th scope="col">{cell}</th>' for cell in head)
+    lines = [f'<div class="scroll"><table class="{css}">', f"<thead><tr>{titles}</tr></thead>" if any(head) else "",
+             "<tbody>"]
     for row in rows:
         if len(row) == 1:
             lines.append(f'<tr class="group"><th scope="colgroup" colspan="{len(head)}">{row[0]}</th></tr>')
