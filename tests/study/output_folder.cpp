@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/output_folder.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "support/temp_folder.hpp"
+
+using namespace thalweg;
+using namespace thalweg::study;
+using test::error_of;
+using test::TempFolder;
+
+TEST_CASE("A folder appears on commit, whole, and nothing else does") {
+    const TempFolder temp;
+    OutputFolder folder(temp / "deep/er/out", IfPresent::refuse);
+    write_text(folder.path() / "summary.json", "{}");
+    CHECK_FALSE(std::filesystem::exists(temp / "deep/er/out"));
+    folder.commit();
+    CHECK(test::bytes_of(temp / "deep/er/out/summary.json") == "{}");
+    CHECK(std::distance(std::filesystem::directory_iterator(temp / "deep/er"), {}) == 1);
+}
+
+TEST_CASE("Without a commit nothing is left, not even the parents that were made") {
+    const TempFolder temp;
+    {
+        OutputFolder folder(temp / "deep/er/out", IfPresent::refuse);
+        write_text(folder.path() / "half.txt", "half");
+    }
+    CHECK(temp.empty());
+}
+
+TEST_CASE("An existing folder is refused, or replaced whole when asked") {
+    const TempFolder temp;
+    std::filesystem::create_directory(temp / "out");
+    std::ofstream(temp / "out/summary.json") << "old";
+    std::ofstream(temp / "out/stale.txt") << "old";
+    CHECK(error_of([&] { OutputFolder(temp / "out", IfPresent::refuse); }).find("--force") != std::string::npos);
+    {
+        OutputFolder abandoned(temp / "out", IfPresent::replace);
+        write_text(abandoned.path() / "summary.json", "new");
+    }
+    CHECK(test::bytes_of(temp / "out/summary.json") == "old");
+    OutputFolder folder(temp / "out/", IfPresent::replace);
+    write_text(folder.path() / "summary.json", "new");
+    folder.commit();
+    CHECK(test::bytes_of(temp / "out/summary.json") == "new");
+    CHECK_FALSE(std::filesystem::exists(temp / "out/stale.txt"));
+}
+
+TEST_CASE("What is not ours is never replaced") {
+    const TempFolder temp;
+    std::filesystem::create_directory(temp / "thesis");
+    std::ofstream(temp / "thesis/chapter1.txt") << "years of work";
+    CHECK(test::is_sentence(error_of([&] { OutputFolder(temp / "thesis", IfPresent::replace); })));
+    temp.text("file", "content");
+    CHECK(test::is_sentence(error_of([&] { OutputFolder(temp / "file", IfPresent::replace); })));
+    CHECK(test::is_sentence(error_of([&] { OutputFolder(temp / "file/below", IfPresent::refuse); })));
+    CHECK(test::bytes_of(temp / "thesis/chapter1.txt") == "years of work");
+    CHECK(test::bytes_of(temp / "file") == "content");
+}
+
+TEST_CASE("Text that cannot be written whole is an error") {
+    CHECK(test::is_sentence(error_of([] { write_text("/dev/full", std::string(100000, 'x')); })));
+}

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/parameters.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "support/temp_folder.hpp"
+
+using namespace thalweg;
+using namespace thalweg::study;
+using test::error_of;
+using test::TempFolder;
+
+namespace {
+
+Experiment read(const std::string& toml, const std::vector<std::string>& overrides = {}) {
+    const TempFolder folder;
+    return read_experiment(folder.text("experiment.toml", toml), overrides);
+}
+
+std::string refusal(const std::string& toml, const std::vector<std::string>& overrides = {}) {
+    return error_of([&] { read(toml, overrides); });
+}
+
+}  // namespace
+
+TEST_CASE("An empty experiment file gives the documented defaults") {
+    const Experiment e = read("");
+    CHECK(e.seed == 1);
+    CHECK_FALSE(e.outlets);
+    CHECK_FALSE(e.river.k);
+    CHECK(e.river.n == 1);
+    CHECK(e.river.receiver == terrain::Receiver::steepest);
+    CHECK_FALSE(e.hillslope.talus_angle_deg);
+    CHECK(e.time.solver == Solver::implicit);
+    CHECK(e.time.convergence == 1e-3);
+    CHECK(e.initial.amplitude_m == 0.01);
+}
+
+TEST_CASE("Every key that is set arrives, whole numbers standing for real ones") {
+    const Experiment e = read(R"(
+seed = 7
+outlets = "all"
+[domain]
+size_m = [20000, 10000.5]
+nodes = 2000
+mesh = "raster"
+[uplift]
+rate_m_per_yr = 1
+pattern = "radial"
+[river]
+k = 2e-5
+m = 0.4
+n = 2
+receiver = "lowest"
+[hillslope]
+talus_angle_deg = 35
+[time]
+solver = "steady"
+max_steps = 1e3
+[output]
+resolution = 256
+)");
+    CHECK(e.seed == 7);
+    CHECK(e.outlets == OutletRule::all);
+    CHECK(e.domain.size_m == std::vector<double>{20000, 10000.5});
+    CHECK(e.domain.nodes == Index{2000});
+    CHECK(e.domain.mesh == MeshKind::raster);
+    CHECK(e.uplift.rate_m_per_yr == 1);
+    CHECK(e.uplift.pattern == evolve::Pattern::radial);
+    CHECK(e.river.k == 2e-5);
+    CHECK(e.river.receiver == terrain::Receiver::lowest);
+    CHECK(e.hillslope.talus_angle_deg == 35.0);
+    CHECK(e.time.solver == Solver::steady);
+    CHECK(e.time.max_steps == 1000);
+    CHECK(e.output.resolution == Index{256});
+}
+
+TEST_CASE("Overrides replace values and need no quotes") {
+    const Experiment e =
+        read("[river]\nk = 1e-6\n", {"river.k=2e-5", "time.solver=steady", "seed=9", "domain.size_m=[1, 2]"});
+    CHECK(e.river.k == 2e-5);
+    CHECK(e.time.solver == Solver::steady);
+    CHECK(e.seed == 9);
+    CHECK(e.domain.size_m == std::vector<double>{1, 2});
+}
+
+TEST_CASE("The resolved experiment reads back as the same experiment") {
+    const Experiment first = read(R"(
+seed = 3
+outlets = "dem"
+[domain]
+dem = "some \"odd\" name.tif"
+initial = "dem"
+[river]
+k = 1.2345678901234567e-7
+m = 0.3333333333333333
+[study]
+uplift_m_per_yr = 3e-5
+channel_area_m2 = 1e6
+)");
+    const TempFolder folder;
+    const std::string text = to_toml(first);
+    const Experiment second = read_experiment(folder.text("again.toml", text));
+    CHECK(to_toml(second) == text);
+    CHECK(second.river.k == first.river.k);
+    CHECK(second.river.m == first.river.m);
+    CHECK(second.domain.dem == first.domain.dem);
+    CHECK(second.study.channel_area_m2 == 1e6);
+}
+
+TEST_CASE("Paths are relative to the experiment file") {
+    const TempFolder folder;
+    const Experiment e = read_experiment(folder.text("e.toml", "[domain]\ndem = \"data/x.tif\"\n"));
+    CHECK(e.domain.dem == folder / "data/x.tif");
+}
+
+TEST_CASE("An unknown key is refused with the nearest one that exists") {
+    CHECK(refusal("[river]\nerodability = 1\n").find("river.") != std::string::npos);
+    CHECK(refusal("[river]\nkk = 1\n").find("'river.k'") != std::string::npos);
+    CHECK(refusal("[tme]\nstep_yr = 1\n").find("unknown key 'tme'") != std::string::npos);
+    CHECK(refusal("sed = 1\n").find("'seed'") != std::string::npos);
+    CHECK(refusal("", {"river.erodability=1e-5"}).find("unknown key 'river.erodability'") != std::string::npos);
+}
+
+TEST_CASE("A wrong type or a value out of range is refused with one sentence that names the key") {
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {"river.k=-1", "river.k must be above 0"},
+        {"river.k=0", "river.k must be above 0"},
+        {"river.m=abc", "river.m must be a number"},
+        {"river.k=nan", "river.k must be a finite number"},
+        {"river.n=0.2", "river.n must be at least 0.3"},
+        {"time.step_yr=inf", "time.step_yr must be a finite number"},
+        {"domain.nodes=0", "domain.nodes must be at least 16"},
+        {"domain.nodes=20.5", "domain.nodes must be a whole number"},
+        {"domain.size_m=[1]", "domain.size_m must be two numbers"},
+        {"domain.size_m=[1, -2]", "domain.size_m must be above 0"},
+        {"domain.dem=3", "domain.dem must be a file name"},
+        {"uplift.pattern=pyramid", "uplift.pattern must be \"constant\" or \"radial\""},
+        {"hillslope.talus_angle_deg=91", "hillslope.talus_angle_deg must be above 0 and at most 90"},
+        {"seed=-1", "seed must be at least 0"},
+        {"river=3", "unknown key"},
+        {"nonsense", "--set needs key=value"},
+        {"seed.inner=3", "is no section"},
+    };
+    for (const auto& [override_text, expected] : cases) {
+        const std::string base = override_text == "seed.inner=3" ? "seed = 1\n" : "";
+        INFO(override_text);
+        const std::string said = refusal(base, {override_text});
+        INFO(said);
+        CHECK(said.find(expected) != std::string::npos);
+        CHECK(test::is_sentence(said));
+    }
+}
+
+TEST_CASE("A file that is missing or no TOML is refused, with the line where reading stopped") {
+    CHECK(error_of([] { read_experiment("nowhere.toml"); }).find("no experiment file") != std::string::npos);
+    CHECK(refusal("[river]\nk = = 3\n").find("line 2") != std::string::npos);
+}
+
+TEST_CASE("Every parameter has a text, a key of its own, and appears in the reference") {
+    Experiment e;
+    const std::string reference = experiment_reference();
+    std::vector<std::string> keys;
+    describe(e, [&](const Field& field, auto&) {
+        keys.emplace_back(field.key);
+        CHECK_FALSE(field.text.empty());
+        CHECK(reference.find(std::string(field.key)) != std::string::npos);
+    });
+    std::sort(keys.begin(), keys.end());
+    CHECK(std::adjacent_find(keys.begin(), keys.end()) == keys.end());
+}
