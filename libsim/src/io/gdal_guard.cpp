@@ -28,6 +28,7 @@ std::string one_line(std::string text) {
 GdalGuard::GdalGuard() {
     CPLPushErrorHandlerEx(collect, this);
     std::call_once(registered, register_drivers);
+    forget();  // what a driver says while it is registered concerns no file of ours
 }
 
 GdalGuard::~GdalGuard() { CPLPopErrorHandler(); }

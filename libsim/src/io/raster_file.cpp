@@ -74,7 +74,7 @@ std::vector<double> nodata_values(GDALRasterBand& band, const ReadOptions& optio
 }
 
 [[noreturn]] void broken(const std::string& name, const GdalGuard& gdal) {
-    throw Error(fmt::format("{} is damaged or cut off{}", name, because(gdal)));
+    throw Error(fmt::format("{} is damaged or cut off ({})", name, gdal.reason()));
 }
 
 using Strip = std::span<double>;
@@ -112,20 +112,29 @@ void to_metres(GDALRasterBand& band, double unit_m, std::vector<double>& values)
     for (double& value : values) value = value * scale + offset;
 }
 
-bool has_own_mask(GDALRasterBand& band) { return (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0; }
+/// The band that tells which cells are valid; null if only nodata values do. GDAL takes alpha for a mask in bands of
+/// 8 and 16 bits only, yet its warper adds alpha to heights of any type.
+GDALRasterBand* mask_of(GDALDataset& dataset) {
+    GDALRasterBand& band = *dataset.GetRasterBand(1);
+    if ((band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0) return band.GetMaskBand();
+    GDALRasterBand* last = dataset.GetRasterBand(dataset.GetRasterCount());
+    return last->GetColorInterpretation() == GCI_AlphaBand ? last : nullptr;
+}
 
-void read_strip(GDALRasterBand& band, Index first_row, Index rows, Index cols, Strip strip, const std::string& name,
-                const GdalGuard& gdal) {
+void read_strip(GDALRasterBand& band, GDALRasterBand* mask, Index first_row, Index rows, Index cols, Strip strip,
+                const std::string& name, const GdalGuard& gdal) {
     const CPLErr status =
         band.RasterIO(GF_Read, 0, static_cast<int>(first_row), static_cast<int>(cols), static_cast<int>(rows),
                       strip.data(), static_cast<int>(cols), static_cast<int>(rows), GDT_Float64, 0, 0, nullptr);
     if (status != CE_None || gdal.failed()) broken(name, gdal);
-    if (has_own_mask(band)) blank_masked(*band.GetMaskBand(), first_row, rows, cols, strip, name, gdal);
+    if (mask != nullptr) blank_masked(*mask, first_row, rows, cols, strip, name, gdal);
 }
 
-void read_values(GDALRasterBand& band, const ReadOptions& options, const std::string& name, const GdalGuard& gdal,
+void read_values(GDALDataset& dataset, const ReadOptions& options, const std::string& name, const GdalGuard& gdal,
                  ReadResult& result) {
     constexpr Index strip_rows = 256;
+    GDALRasterBand& band = *dataset.GetRasterBand(1);
+    GDALRasterBand* const mask = mask_of(dataset);
     const Grid& grid = result.raster.grid;
     const std::vector<double> nodata = nodata_values(band, options);
     std::vector<double>& values = result.raster.values;
@@ -134,7 +143,7 @@ void read_values(GDALRasterBand& band, const ReadOptions& options, const std::st
     for (Index row = 0; row < grid.rows; row += strip_rows) {
         const Index rows = std::min(strip_rows, grid.rows - row);
         const Strip strip(values.data() + std::size_t{row} * grid.cols, std::size_t{rows} * grid.cols);
-        read_strip(band, row, rows, grid.cols, strip, name, gdal);
+        read_strip(band, mask, row, rows, grid.cols, strip, name, gdal);
         absurd += blank_nodata(strip, nodata);
     }
     if (absurd > 0) {
@@ -167,8 +176,7 @@ ReadResult read_dataset(GDALDataset& dataset, const std::string& name, const Rea
     check_size(dataset, name);
     check_band(dataset, name, result);
     const RowOrder order = place_raster(dataset, name, options.crs, result);
-    GDALRasterBand& band = *dataset.GetRasterBand(1);
-    read_values(band, options, name, gdal, result);
+    read_values(dataset, options, name, gdal, result);
     if (order == RowOrder::south_to_north) turn_over(result.raster);
     check_any_data(result, name);
     const std::vector<std::string> noticed = survey_heights(result.raster, name);

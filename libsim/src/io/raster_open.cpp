@@ -83,12 +83,48 @@ void check_file(const fs::path& path) {
     VSIFCloseL(file);
 }
 
+/// What GDAL said, without the name of the file, which begins the sentence already.
+std::string reason_without(const std::string& name, const GdalGuard& gdal) {
+    std::string reason = gdal.reason();
+    for (std::size_t at = reason.find(name + ":"); at != std::string::npos; at = reason.find(name + ":")) {
+        reason.erase(at, reason.find_first_not_of(": ", at + name.size()) - at);
+    }
+    return reason;
+}
+
 [[noreturn]] void refuse(const fs::path& path, const GdalGuard& gdal) {
-    if (fs::is_directory(path)) throw Error(fmt::format("{} is a folder, not a raster file", path.string()));
-    std::string reason = because(gdal);
-    if (reason.find("not recognized") != std::string::npos) reason.clear();
-    throw Error(
-        fmt::format("{} is no raster that can be read (GeoTIFF, .hgt, .asc, .bil, …){}", path.string(), reason));
+    const std::string name = path.string();
+    const std::string reason = reason_without(name, gdal);
+    if (fs::is_directory(path)) throw Error(fmt::format("{} is a folder, not a raster file", name));
+    if (reason.find("ENVI header") != std::string::npos) {
+        throw Error(fmt::format("{} is only the header of a raster: give the data file beside it", name));
+    }
+    if (lower_extension(name) == ".hgt") {
+        throw Error(
+            fmt::format("{} has {} bytes; an .hgt tile has 2884802 (3 arc-seconds) or 25934402 (1 arc-second) "
+                        "and a name such as N42E001.hgt",
+                        name, fs::file_size(path)));
+    }
+    if (reason.empty() || reason.find("not recognized") != std::string::npos) {
+        throw Error(fmt::format("{} is no raster that can be read (GeoTIFF, .hgt, .asc, .bil, …)", name));
+    }
+    throw Error(fmt::format("{} is damaged or cut off ({})", name, reason));
+}
+
+/// GDAL reads what a raw file (.bil and the like) lacks at its end as zeros, in silence.
+void check_raw_size(const fs::path& path, GDALDataset& dataset) {
+    GDALDataset::RawBinaryLayout layout;
+    const char* compression = dataset.GetMetadataItem("file_compression", "ENVI");
+    if ((compression != nullptr && EQUAL(compression, "1")) || !dataset.GetRawBinaryLayout(layout)) return;
+    VSIStatBufL status;
+    if (VSIStatL(layout.osRawFilename.c_str(), &status) != 0) return;
+    const std::int64_t last = static_cast<std::int64_t>(layout.nImageOffset) +
+                              (dataset.GetRasterYSize() - 1) * static_cast<std::int64_t>(layout.nLineOffset) +
+                              (dataset.GetRasterXSize() - 1) * static_cast<std::int64_t>(layout.nPixelOffset) +
+                              GDALGetDataTypeSizeBytes(layout.eDataType);
+    if (static_cast<std::int64_t>(status.st_size) >= last) return;
+    throw Error(fmt::format("{} is cut off: it has {} bytes, and its header speaks of {}", path.string(),
+                            static_cast<std::int64_t>(status.st_size), last));
 }
 
 /// A container such as netCDF holds its rasters as subdatasets and has no band of its own.
@@ -113,6 +149,7 @@ DatasetPtr open_raster(const fs::path& path, GdalGuard& gdal) {
     if (dataset->GetRasterCount() == 0) dataset = open_subdataset(path, *dataset);
     if (!dataset || dataset->GetRasterCount() == 0) refuse(path, gdal);
     gdal.forget();
+    check_raw_size(path, *dataset);
     return dataset;
 }
 

@@ -12,8 +12,8 @@
 namespace thalweg::io {
 
 struct ReadOptions {
-    std::optional<double> nodata;    ///< value to be taken as no data besides what the file declares
-    std::string crs;                 ///< e.g. "EPSG:32611": replaces what the file says; empty: the file's own
+    std::optional<double> nodata = {};  ///< value to be taken as no data besides what the file declares
+    std::string crs = {};               ///< e.g. "EPSG:32611": replaces what the file says; empty: the file's own
 };
 
 /// A raster with what the reader noticed, one sentence each, for the user to see (a missing CRS taken as WGS 84, a
@@ -37,8 +37,8 @@ enum class CellType { float64, uint8, int32 };
 /// What a written raster holds.
 struct Layer {
     CellType type = CellType::float64;
-    std::optional<double> nodata;    ///< tag to write; NaN in memory becomes this
-    std::string description;         ///< of the band, with its unit
+    std::optional<double> nodata = {};  ///< tag to write; NaN in memory becomes this
+    std::string description = {};       ///< of the band, with its unit
 };
 
 /// Writes a tiled GeoTIFF (ZSTD with predictor where GDAL has it, else DEFLATE), bytes a function of the values alone.

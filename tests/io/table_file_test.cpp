@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/io/table_file.hpp"
+
+#include <ogrsf_frmts.h>
+#include <unistd.h>
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "io/file_limit.hpp"
+#include "support/temp_folder.hpp"
+
+using namespace thalweg;
+using test::bytes_of;
+using test::error_of;
+using test::TempFolder;
+
+namespace {
+
+const double no_value = std::numeric_limits<double>::quiet_NaN();
+
+Table small_table() {
+    return {.name = "sheet",
+            .columns = {{"height_m", std::vector<double>{0.1, no_value, -1e-300}},
+                        {"count", std::vector<std::int64_t>{1, -9007199254740993, 3}},
+                        {"remark, \"quoted\"", std::vector<std::string>{"plain", "a,b", "two\nlines \"here\""}}},
+            .kind = GeometryKind::no_geometry,
+            .geometry = {}};
+}
+
+Table point_table(int rows) {
+    Table table{.name = "points", .columns = {}, .kind = GeometryKind::point, .geometry = {}};
+    std::vector<double> value;
+    for (int i = 0; i < rows; ++i) {
+        value.push_back(i / 3.0);
+        table.geometry.push_back({{i * 10.0, i * -5.0}});
+    }
+    table.columns.push_back({"value_m", value});
+    return table;
+}
+
+std::vector<Table> three_layers() {
+    return {point_table(3),
+            {.name = "links",
+             .columns = {{"fid", std::vector<std::int64_t>{7, 8}}, {"geom", std::vector<std::string>{"a", "b"}}},
+             .kind = GeometryKind::line,
+             .geometry = {{{0, 0}, {1, 2}, {3, 3}}, {{5, 5}, {6, 7}}}},
+            {.name = "basins",
+             .columns = {{"area_m2", std::vector<double>{0.5, no_value}}},
+             .kind = GeometryKind::polygon,
+             .geometry = {{{0, 0}, {1, 0}, {1, 1}}, {{0, 0}, {2, 0}, {2, 2}, {0, 2}}}}};
+}
+
+}  // namespace
+
+TEST_CASE("a CSV is quoted as RFC 4180 says and its numbers are the shortest that read back", "[csv]") {
+    const TempFolder folder;
+    io::write_csv(folder / "sheet.csv", small_table());
+    CHECK(bytes_of(folder / "sheet.csv") ==
+          "height_m,count,\"remark, \"\"quoted\"\"\"\n"
+          "0.1,1,plain\n"
+          ",-9007199254740993,\"a,b\"\n"
+          "-1e-300,3,\"two\nlines \"\"here\"\"\"\n");
+}
+
+TEST_CASE("doubles survive a CSV to the last bit", "[csv]") {
+    const TempFolder folder;
+    std::vector<double> values{0.1, 1.0 / 3, 5e-324, 1.7976931348623157e308, -0.0, 123456789.123456789};
+    for (int i = 0; i < 2000; ++i) values.push_back(std::sin(i) * std::pow(10, i % 40 - 20));
+    Table table{.name = "t", .columns = {{"v", values}}, .kind = GeometryKind::no_geometry, .geometry = {}};
+    io::write_csv(folder / "t.csv", table);
+    const Table back = io::read_csv(folder / "t.csv");
+    CHECK(back.name == "t");
+    CHECK(std::get<std::vector<double>>(back.columns.at(0).values) == values);
+}
+
+TEST_CASE("columns of a CSV are numbers where all fields are numbers or empty, else text", "[csv]") {
+    const TempFolder folder;
+    const Table table = io::read_csv(folder.text("t.csv",
+                                                 "\xEF\xBB\xBF"
+                                                 "a,b,\"c \"\"x\"\"\"\r\n1,,\"p,q\"\r\n2e3,7,\"r\ns\"\r\n"));
+    REQUIRE(table.columns.size() == 3);
+    CHECK(table.columns[0].name == "a");
+    CHECK(std::get<std::vector<double>>(table.columns[0].values) == std::vector<double>{1, 2000});
+    CHECK(std::isnan(std::get<std::vector<double>>(table.columns[1].values)[0]));
+    CHECK(table.columns[2].name == "c \"x\"");
+    CHECK(std::get<std::vector<std::string>>(table.columns[2].values) == std::vector<std::string>{"p,q", "r\ns"});
+    const Table text = io::read_csv(folder.text("u.csv", "a\n1\n1 m\n"));
+    CHECK(std::get<std::vector<std::string>>(text.columns[0].values) == std::vector<std::string>{"1", "1 m"});
+}
+
+TEST_CASE("a broken CSV is refused with the number of the line", "[csv]") {
+    const TempFolder folder;
+    const auto read = [&](const std::string& text) {
+        return error_of([&] { io::read_csv(folder.text("t.csv", text)); });
+    };
+    CHECK(read("a,b\n1,2\n3\n").find("line 3") != std::string::npos);
+    CHECK(read("a,b\n\"x\ny\",2\n3\n").find("line 4") != std::string::npos);
+    CHECK(read("a,b\n1,\"2\n").find("line 2") != std::string::npos);
+    CHECK(read("a,b\n1,\"2\"x\n").find("line 2") != std::string::npos);
+    CHECK(read("").find("header") != std::string::npos);
+    CHECK(error_of([&] { io::read_csv(folder / "none.csv"); }).find("No such file") != std::string::npos);
+    CHECK(error_of([&] { io::read_csv(folder / ""); }).find("folder") != std::string::npos);
+}
+
+TEST_CASE("a CSV that cannot be written whole is an error and leaves nothing", "[csv]") {
+    const TempFolder folder;
+    CHECK(error_of([&] { io::write_csv(folder / "no/such/t.csv", small_table()); }) != "");
+    if (std::filesystem::exists("/dev/full")) {
+        CHECK(error_of([&] { io::write_csv("/dev/full", small_table()); }).find("No space") != std::string::npos);
+        CHECK(std::filesystem::exists("/dev/full"));
+    }
+    const test::FileLimit limit(20);
+    CHECK(test::is_sentence(error_of([&] { io::write_csv(folder / "t.csv", small_table()); })));
+    CHECK(folder.empty());
+}
+
+TEST_CASE("a GeoPackage holds its layers, geometries and numbers", "[geopackage]") {
+    const TempFolder folder;
+    io::write_geopackage(folder / "g.gpkg", three_layers(), "");
+    const GDALDatasetUniquePtr package(
+        GDALDataset::Open((folder / "g.gpkg").c_str(), GDAL_OF_VECTOR, nullptr, nullptr, nullptr));
+    REQUIRE(package);
+    REQUIRE(package->GetLayerCount() == 3);
+    OGRLayer* points = package->GetLayerByName("points");
+    REQUIRE(points->GetFeatureCount() == 3);
+    const OGRFeatureUniquePtr second(points->GetFeature(2));
+    CHECK(second->GetFieldAsDouble("value_m") == 1 / 3.0);
+    CHECK(second->GetGeometryRef()->toPoint()->getY() == -5);
+    CHECK(points->GetSpatialRef()->IsGeographic() == 0);
+    OGRLayer* links = package->GetLayerByName("links");
+    const OGRFeatureUniquePtr link(links->GetNextFeature());
+    CHECK(link->GetFieldAsInteger64("fid") == 7);
+    CHECK(std::string(link->GetFieldAsString("geom")) == "a");
+    CHECK(link->GetGeometryRef()->toLineString()->getNumPoints() == 3);
+    OGRLayer* basins = package->GetLayerByName("basins");
+    const OGRFeatureUniquePtr triangle(basins->GetNextFeature());
+    CHECK(triangle->GetGeometryRef()->toPolygon()->get_Area() == 0.5);
+    const OGRFeatureUniquePtr square(basins->GetNextFeature());
+    CHECK(square->GetGeometryRef()->toPolygon()->get_Area() == 4);
+    CHECK(square->IsFieldNull(0));
+}
+
+TEST_CASE("a GeoPackage carries the coordinate system it was given", "[geopackage]") {
+    const TempFolder folder;
+    OGRSpatialReference utm;
+    utm.importFromEPSG(32611);
+    char* wkt = nullptr;
+    utm.exportToWkt(&wkt);
+    io::write_geopackage(folder / "g.gpkg", {point_table(2)}, wkt);
+    CPLFree(wkt);
+    const GDALDatasetUniquePtr package(
+        GDALDataset::Open((folder / "g.gpkg").c_str(), GDAL_OF_VECTOR, nullptr, nullptr, nullptr));
+    REQUIRE(package);
+    CHECK(std::string(package->GetLayer(0)->GetSpatialRef()->GetAuthorityCode(nullptr)) == "32611");
+    CHECK(error_of([&] { io::write_geopackage(folder / "h.gpkg", {point_table(2)}, "nonsense"); }) != "");
+    CHECK_FALSE(std::filesystem::exists(folder / "h.gpkg"));
+}
+
+TEST_CASE("the same tables give the same GeoPackage, byte for byte, also over an older one", "[geopackage]") {
+    const TempFolder folder;
+    io::write_geopackage(folder / "a.gpkg", three_layers(), "");
+    ::usleep(1100000);  // a clock that were asked would have moved on by a second
+    io::write_geopackage(folder / "b.gpkg", {point_table(500)}, "");
+    io::write_geopackage(folder / "b.gpkg", three_layers(), "");
+    CHECK(bytes_of(folder / "a.gpkg") == bytes_of(folder / "b.gpkg"));
+}
+
+TEST_CASE("a GeoPackage that cannot be written whole is an error and leaves nothing", "[geopackage]") {
+    const TempFolder folder;
+    CHECK(error_of([&] { io::write_geopackage(folder / "no/such/g.gpkg", three_layers(), ""); }) != "");
+    for (const std::size_t bytes : {100, 20000, 100000, 150000}) {
+        const test::FileLimit limit(bytes);
+        CHECK(test::is_sentence(error_of([&] { io::write_geopackage(folder / "g.gpkg", {point_table(3000)}, ""); })));
+        CHECK(folder.empty());
+    }
+}
