@@ -14,7 +14,7 @@ namespace thalweg::terrain {
 struct FlowGraph {
     std::vector<Index> receiver;   ///< per node; `none` at outlets and nodes without data
     std::vector<double> length;    ///< per node: distance to the receiver (m); 0 where there is none
-    std::vector<Index> order;      ///< every node with data once, each after its receiver: outlets first
+    std::vector<Index> order;      ///< every node with data once, each after its receiver
 
     Index size() const { return static_cast<Index>(receiver.size()); }
 };

@@ -8,9 +8,9 @@
 namespace thalweg::terrain {
 
 /// Lakes seen as basins joined at their passes (Cordonnier, Bovy & Braun 2019). Every node is labelled with the pit or
-/// outlet that its water reaches; the lowest pass between each pair of basins is found; Kruskal's algorithm on (height,
-/// node numbers) joins every basin to the outside over the lowest possible way. The two uses below walk that tree.
-/// Cost: linear in the nodes, plus sorting of the passes.
+/// outlet that its water reaches; one round of Borůvka's algorithm and then Kruskal's, on (height, node numbers), join
+/// every basin to the outside over the lowest possible way. The two uses below walk that tree.
+/// Cost: linear in the nodes, plus sorting of the passes that the first round leaves; no heap.
 ///
 /// Where a connected piece of the domain has no outlet at all, its lowest node becomes one.
 

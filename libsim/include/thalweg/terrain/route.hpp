@@ -15,8 +15,8 @@ enum class Receiver {
     lowest     ///< the lowest neighbour (Bell 2024)
 };
 
-/// Single flow direction of every node: the neighbour of steepest descent (or the lowest), ties to the lower slot, which
-/// on a mesh is the lower index. `no_flow` where no neighbour is strictly lower, at base level and without data (NaN).
+/// Single flow direction of every node: the neighbour of steepest descent, drop × (1 / length), or the lowest; ties to the
+/// lower slot (on a mesh the lower index). `no_flow` where none is strictly lower, at base level and without data (NaN).
 FlowDirections route(const Grid&, std::span<const double> elevation_m, std::span<const Boundary>,
                      Receiver = Receiver::steepest);
 FlowDirections route(const Mesh&, std::span<const double> elevation_m, std::span<const Boundary>,
