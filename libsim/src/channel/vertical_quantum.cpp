@@ -54,16 +54,6 @@ double common_divisor(const std::vector<double>& heights, double rounding, doubl
     return divisor < smallest - rounding ? 0 : divisor;
 }
 
-/// Sharpens a divisor known to rounding by counting it out over longer and longer distances.
-double sharpened(const std::vector<double>& heights, double divisor) {
-    for (std::size_t i = 1; i < heights.size(); i = 2 * i) {
-        const double distance = heights[std::min(i, heights.size() - 1)] - heights.front();
-        divisor = distance / std::max(1.0, std::round(distance / divisor));
-    }
-    const double range = heights.back() - heights.front();
-    return range / std::max(1.0, std::round(range / divisor));
-}
-
 }  // namespace
 
 double vertical_quantum(std::span<const double> elevation_m, double smallest_m) {
@@ -77,9 +67,8 @@ double vertical_quantum(std::span<const double> elevation_m, double smallest_m) 
     if (heights.size() < 2 || 2 * heights.size() < all.size()) heights = std::move(all);
     if (heights.size() < 2) return 0;
     const double least = std::max(smallest_m, 8 * rounding);  // finer, and rounding alone would look like it
-    double quantum = common_divisor(heights, rounding, least);
+    const double quantum = common_divisor(heights, rounding, least);
     if (quantum == 0) return 0;
-    quantum = sharpened(heights, quantum);
     const auto fits = [&](double height) {
         return std::abs(std::remainder(height - heights.front(), quantum)) <= 2 * rounding;
     };
