@@ -121,7 +121,7 @@ TEST_CASE("edge cells within two of the outlet they drain to do not cut a catchm
 }
 
 TEST_CASE("a mask that leaves by one outlet is complete") {
-    // A cone's inside out: all of a bowl with a notch drains by the notch. One cell in a hundred may leave elsewhere.
+    // A row of a hundred cells that flows east; the first few may leave by themselves.
     const auto complete_cells = [](Index strays) {
         std::string row;
         for (Index c = 0; c < 100; ++c) row += c + 1 == 100 ? ". " : (c < strays ? ". " : "> ");
