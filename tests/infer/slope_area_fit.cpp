@@ -180,6 +180,26 @@ TEST_CASE("One wild bin hardly moves the fit") {
     CHECK(std::abs(-normal_equations(bins).slope - law.m) > 0.03);  // least squares without Huber's loss is moved
 }
 
+TEST_CASE("Where a bin is resisted, errors of steepness and k are those of the weights it is left with") {
+    std::vector<SlopeAreaBin> bins = exact_bins({}, 20, 0.05);
+    bins.back().slope *= 3;  // its weight falls to 1.345/|r|, which moves the centre of the weights off A0
+    bins.back().slope_se *= 3;
+    const SlopeAreaFit fit = fit_slope_area(bins, {.uplift_m_per_yr = 4e-4});
+    const double residual = std::log(bins.back().slope / fit.fitted_slope.back()) / 0.05;
+    REQUIRE(residual > 10);
+    bins.back().slope_se *= std::sqrt(residual / 1.345);
+    double s = 0, sx = 0, sxx = 0;
+    for (const SlopeAreaBin& bin : bins) {
+        const double w = std::pow(bin.slope / bin.slope_se, 2), x = std::log(bin.area_m2);
+        s += w, sx += w * x, sxx += w * x * x;
+    }
+    const double determinant = s * sxx - sx * sx;
+    const double scale = std::sqrt(std::max(1.0, fit.reduced_chi2));
+    CHECK(fit.ks.standard_error / fit.ks.value == Approx(scale * std::sqrt(sxx / determinant)).epsilon(1e-3));
+    CHECK(fit.theta.standard_error == Approx(scale * std::sqrt(s / determinant)).epsilon(1e-3));
+    CHECK(fit.correlation_log_k_m == Approx(-sx / std::sqrt(s * sxx)).epsilon(1e-4));
+}
+
 TEST_CASE("Without an uplift rate k is unknown but k/u is told") {
     const PowerLaw law;
     const SlopeAreaFit fit = fit_slope_area(exact_bins(law, 15), SlopeAreaFitOptions{});
