@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "command.hpp"
 
+#include "interrupt.hpp"
+
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -108,6 +110,7 @@ void run_into_folder(const CommonOptions& options, const std::string& figures,
     Console console(options.quiet);
     const study::Messages m = console.messages();
     study::OutputFolder folder(options.out, options.force ? study::IfPresent::replace : study::IfPresent::refuse);
+    const InterruptGuard guard(folder);
     const std::string summary = work(folder.path(), m);
     if (!figures.empty() && !options.no_figures) {
         m.progress("drawing");

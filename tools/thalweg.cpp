@@ -7,6 +7,7 @@
 #include <string>
 
 #include "command.hpp"
+#include "interrupt.hpp"
 #include "thalweg/core/error.hpp"
 
 namespace {
@@ -24,6 +25,17 @@ int fail(int code, std::string message) {
     return code;
 }
 
+/// CLI11 would only say that a subcommand is required.
+void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
+    if (argc < 2 || argv[1][0] == '-') return;
+    std::string known;
+    for (const CLI::App* command : app.get_subcommands({})) {
+        if (command->get_name() == argv[1]) return;
+        known += ' ' + command->get_name();
+    }
+    throw thalweg::Error("unknown command '" + std::string(argv[1]) + "'; there are:" + known);
+}
+
 int parse_and_run(int argc, char** argv) {
     CLI::App app{"Thalweg simulates landscapes, measures real ones, fits the one to the other, and compares them."};
     app.name("thalweg");
@@ -33,6 +45,7 @@ int parse_and_run(int argc, char** argv) {
                            thalweg::tools::add_compare, thalweg::tools::add_run, thalweg::tools::add_version}) {
         add(app);
     }
+    refuse_unknown_command(app, argc, argv);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {
@@ -46,6 +59,7 @@ int parse_and_run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+    thalweg::tools::hold_back_signals();
     try {
         return parse_and_run(argc, argv);
     } catch (const thalweg::Error& error) {

@@ -25,7 +25,7 @@ Drawing draw(const std::vector<std::string>& lines) {
     const auto rows = static_cast<Index>(lines.size());
     const auto cols = static_cast<Index>(lines.front().size());
     drawing.frame.grid = plane_grid(rows, cols, 2, 3);
-    drawing.frame.placement = {.west = 100, .north = 50, .cell_width = 2, .cell_height = 3};
+    drawing.frame.placement = {.west = 100, .north = 50, .cell_width = 2, .cell_height = 3, .crs_wkt = {}};
     for (const std::string& line : lines) {
         for (const char c : line) drawing.labels.push_back(c >= '0' && c <= '9' ? static_cast<Index>(c - '0') : none);
     }

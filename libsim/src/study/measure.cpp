@@ -139,9 +139,10 @@ std::vector<channel::SlopeAreaPoint> segments(const RoutedTerrain& carved, Raste
     m.segment_drop_m = std::max(0.025 * relief, 3 * m.vertical_quantum_m);
     if (!(m.segment_drop_m > 0)) return {};
     const bool keep = options.edge_basins == terrain::EdgeBasins::keep;
-    return channel::fixed_drop_segments(carved.graph, carved.drainage_area_m2, carved.elevation_m,
-                                        keep ? std::span<const std::uint8_t>{} : carved.complete,
-                                        {.drop_m = m.segment_drop_m, .smallest_area_m2 = threshold_m2});
+    return channel::fixed_drop_segments(
+        carved.graph, carved.drainage_area_m2, carved.elevation_m,
+        keep ? std::span<const std::uint8_t>{} : carved.complete,
+        {.drop_m = m.segment_drop_m, .smallest_drop_m = 3 * m.vertical_quantum_m, .smallest_area_m2 = threshold_m2});
 }
 
 std::vector<Boundary> boundary_of(const Raster& raster, const MeasureOptions& options) {

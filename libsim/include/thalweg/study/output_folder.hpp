@@ -24,9 +24,10 @@ class OutputFolder {
     const std::filesystem::path& path() const { return partial_; }
     void commit();
 
-  private:
+    /// Removes what was written so far, as the destructor does without a commit; for a program that is being stopped.
     void discard();
 
+  private:
     std::filesystem::path final_;
     std::filesystem::path partial_;
     std::vector<std::filesystem::path> created_parents_;  ///< innermost first

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "interrupt.hpp"
+
+#include <pthread.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <iostream>
+
+namespace thalweg::tools {
+namespace {
+
+constexpr int leave = SIGUSR1;  // the guard's own word to its watcher
+
+sigset_t watched_signals() {
+    sigset_t set;
+    sigemptyset(&set);
+    for (const int sign : {SIGINT, SIGTERM, SIGHUP, leave}) sigaddset(&set, sign);
+    return set;
+}
+
+void watch(study::OutputFolder& folder) {
+    const sigset_t set = watched_signals();
+    int sign = 0;
+    sigwait(&set, &sign);
+    if (sign == leave) return;
+    folder.discard();
+    std::cerr << "thalweg: error: stopped by a signal; nothing was written" << std::endl;
+    ::_exit(128 + sign);
+}
+
+}  // namespace
+
+void hold_back_signals() {
+    const sigset_t set = watched_signals();
+    pthread_sigmask(SIG_BLOCK, &set, nullptr);
+    ::signal(SIGXFSZ, SIG_IGN);
+    ::signal(SIGPIPE, SIG_IGN);
+}
+
+InterruptGuard::InterruptGuard(study::OutputFolder& folder) : watcher_([&folder] { watch(folder); }) {}
+
+InterruptGuard::~InterruptGuard() {
+    pthread_kill(watcher_.native_handle(), leave);
+    watcher_.join();
+}
+
+}  // namespace thalweg::tools

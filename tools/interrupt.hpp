@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <thread>
+
+#include "thalweg/study/output_folder.hpp"
+
+namespace thalweg::tools {
+
+/// Makes the program stoppable without debris: call once before any thread is started. A file size limit then becomes a
+/// failed write, and Ctrl-C and its like wait for a guard.
+void hold_back_signals();
+
+/// While it lives, SIGINT, SIGTERM and SIGHUP discard the folder, say so in one line, and end the program with 128 plus
+/// the signal's number.
+class InterruptGuard {
+  public:
+    explicit InterruptGuard(study::OutputFolder&);
+    ~InterruptGuard();
+    InterruptGuard(const InterruptGuard&) = delete;
+    InterruptGuard& operator=(const InterruptGuard&) = delete;
+
+  private:
+    std::thread watcher_;
+};
+
+}  // namespace thalweg::tools
