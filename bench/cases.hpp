@@ -14,10 +14,10 @@
 
 namespace thalweg::bench {
 
-/// Reports the time of one iteration divided by `items`, in nanoseconds.
+/// Reports the time of one iteration divided by `items`.
 inline void per_item(benchmark::State& state, double items) {
-    state.counters["ns_per_item"] =
-        benchmark::Counter(items * 1e-9, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
+    state.counters["per_item"] =
+        benchmark::Counter(items, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
 }
 
 /// Rough terrain with many pits: eleven octaves of noise on a tilt, in whole metres as real DEMs have them.
