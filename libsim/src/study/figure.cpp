@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cstdlib>
 #include <vector>
 
@@ -31,6 +32,9 @@ fs::path script() {
     }
     return file;
 }
+
+/// Process group of the drawing that is under way, 0 for none: the one thing a stopped program must know of it.
+std::atomic<pid_t> drawing{0};
 
 struct ProgramResult {
     int exit_code;     ///< -1: it did not start
@@ -59,7 +63,8 @@ ProgramResult run_program(const std::vector<std::string>& words) {
     sigset_t no_signals;
     sigemptyset(&no_signals);
     posix_spawnattr_setsigmask(&attributes, &no_signals);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    posix_spawnattr_setpgroup(&attributes, 0);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
     std::vector<char*> arguments;
     for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
     arguments.push_back(nullptr);
@@ -67,6 +72,7 @@ ProgramResult run_program(const std::vector<std::string>& words) {
     const int problem = ::posix_spawn(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
     posix_spawnattr_destroy(&attributes);
+    if (problem == 0) drawing = child;
     ::close(ends[1]);
     ProgramResult result{-1, problem == 0 ? read_all(ends[0]) : "it does not start"};
     ::close(ends[0]);
@@ -74,6 +80,7 @@ ProgramResult run_program(const std::vector<std::string>& words) {
     if (problem == 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status)) {
         result.exit_code = WEXITSTATUS(status);
     }
+    drawing = 0;
     return result;
 }
 
@@ -94,6 +101,11 @@ void draw_figures(const std::string& what, const fs::path& folder) {
         fmt::format("the figures could not be drawn: {} (they need python3-matplotlib and python3-gdal; "
                     "--no-figures leaves them out)",
                     result.said.empty() ? "python ended abnormally" : last_line(result.said)));
+}
+
+void stop_drawing() {
+    const pid_t group = drawing;
+    if (group > 0) ::kill(-group, SIGKILL);
 }
 
 }  // namespace thalweg::study
