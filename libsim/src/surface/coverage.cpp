@@ -13,36 +13,51 @@ namespace thalweg::surface {
 namespace {
 
 constexpr Index rows_per_band = 32;
-constexpr double hair = 1e-6;  ///< of a cell: bounds are this much wider, and the exact test decides
+/// Bounds are this much wider than computed, against rounding at coordinates of this size; the exact test decides.
+double slack_for(double spacing, double largest_coordinate) {
+    return 1e-6 * spacing + 16 * std::numeric_limits<double>::epsilon() * largest_coordinate;
+}
 
 struct Range {
     Index first;
     Index last;  ///< one past
 };
 
-/// Cells whose centres lie between `low` and `high` (in cells from the first cell's edge), and a hair beyond.
+/// Cells whose centres lie between `low` and `high`, in cells from the first cell's edge.
 Range centers_between(double low, double high, Index cells) {
-    const double first = std::ceil(low - 0.5 - hair);
-    const double last = std::floor(high - 0.5 + hair) + 1;
+    const double first = std::ceil(low - 0.5);
+    const double last = std::floor(high - 0.5) + 1;
     return {static_cast<Index>(std::clamp(first, 0.0, double(cells))),
             static_cast<Index>(std::clamp(last, 0.0, double(cells)))};
 }
 
-Range rows_of(const TriangleTest& test, const Raster& raster) {
-    const Placement& place = raster.placement;
-    return centers_between((place.north - test.north()) / place.cell_height,
-                           (place.north - test.south()) / place.cell_height, raster.grid.rows);
-}
+/// Where the centres of a raster's cells are.
+struct Centers {
+    explicit Centers(const Raster& raster)
+        : place(raster.placement),
+          rows(raster.grid.rows),
+          cols(raster.grid.cols),
+          slack_x(slack_for(place.cell_width, std::abs(place.west) + cols * place.cell_width)),
+          slack_y(slack_for(place.cell_height, std::abs(place.north) + rows * place.cell_height)) {}
 
-/// The columns in which the triangle can have centres of this row.
-Range cols_of(const TriangleTest& test, const Raster& raster, double y) {
-    const Placement& place = raster.placement;
-    const double slack = hair * place.cell_height;
-    const auto [west, east] = test.between(y - slack, y + slack);
-    if (!(west <= east)) return {0, 0};
-    return centers_between((west - place.west) / place.cell_width, (east - place.west) / place.cell_width,
-                           raster.grid.cols);
-}
+    Range rows_of(const TriangleTest& test) const {
+        return centers_between((place.north - test.north() - slack_y) / place.cell_height,
+                               (place.north - test.south() + slack_y) / place.cell_height, rows);
+    }
+
+    /// The columns in which the triangle can have centres of this row.
+    Range cols_of(const TriangleTest& test, Index row) const {
+        const double y = place.center(row, 0).y;
+        const auto [west, east] = test.between(y - slack_y, y + slack_y);
+        if (!(west <= east)) return {0, 0};
+        return centers_between((west - slack_x - place.west) / place.cell_width,
+                               (east + slack_x - place.west) / place.cell_width, cols);
+    }
+
+    const Placement& place;
+    Index rows, cols;
+    double slack_x, slack_y;
+};
 
 /// Triangles sorted into bands (of rows, of buckets), ascending in each.
 struct Bands {
@@ -63,11 +78,11 @@ Bands sort_into_bands(std::size_t count, ForEach for_each) {
     return bands;
 }
 
-Bands bands_of_rows(const Triangulation& plane, const Raster& raster) {
-    const Index count = (raster.grid.rows + rows_per_band - 1) / rows_per_band;
+Bands bands_of_rows(const Triangulation& plane, const Centers& centers) {
+    const Index count = (centers.rows + rows_per_band - 1) / rows_per_band;
     return sort_into_bands(count, [&](auto put) {
         for (Index t = 0; t < plane.triangles.size(); ++t) {
-            const Range rows = rows_of(TriangleTest(plane, plane.triangles[t]), raster);
+            const Range rows = centers.rows_of(TriangleTest(plane, plane.triangles[t]));
             if (rows.first >= rows.last) continue;
             const Index last = (rows.last - 1) / rows_per_band;
             for (Index band = rows.first / rows_per_band; band <= last; ++band) put(band, t);
@@ -76,21 +91,21 @@ Bands bands_of_rows(const Triangulation& plane, const Raster& raster) {
 }
 
 /// Collects the cells of one band that lie in the triangle and in none before it.
-void claim_cells(const TriangleTest& test, const Raster& raster, const Range& band, std::vector<char>& taken,
+void claim_cells(const TriangleTest& test, const Centers& centers, const Range& band, std::vector<char>& taken,
                  Claim& claim) {
     claim.cells.clear();
     for (auto& coordinate : claim.at) coordinate.clear();
-    const Range rows = rows_of(test, raster);
+    const Range rows = centers.rows_of(test);
     const Index last = std::min(rows.last, band.last);
     for (Index row = std::max(rows.first, band.first); row < last; ++row) {
-        const Range cols = cols_of(test, raster, raster.placement.center(row, 0).y);
+        const Range cols = centers.cols_of(test, row);
         for (Index col = cols.first; col < cols.last; ++col) {
-            char& is_taken = taken[(row - band.first) * raster.grid.cols + col];
+            char& is_taken = taken[(row - band.first) * centers.cols + col];
             if (is_taken) continue;
-            const auto at = test.coordinates(raster.placement.center(row, col));
+            const auto at = test.coordinates(centers.place.center(row, col));
             if (!TriangleTest::holds(at)) continue;
             is_taken = 1;
-            claim.cells.push_back(row * raster.grid.cols + col);
+            claim.cells.push_back(row * centers.cols + col);
             for (int k = 0; k < 3; ++k) claim.at[k].push_back(at[k]);
         }
     }
@@ -98,7 +113,7 @@ void claim_cells(const TriangleTest& test, const Raster& raster, const Range& ba
 
 /// Square buckets over the triangles, about as many as there are triangles.
 struct Buckets {
-    double west, south, size;
+    double west, south, size, slack;
     Index cols, rows;
     Bands bands;
 
@@ -114,14 +129,13 @@ struct Buckets {
 /// Calls put(bucket, t) for the buckets that triangle t can touch.
 template <class Put>
 void put_into_buckets(const Buckets& buckets, const TriangleTest& test, Index t, Put put) {
-    const double slack = hair * buckets.size;
-    const Index last_row = buckets.row(test.north() + slack);
-    for (Index row = buckets.row(test.south() - slack); row <= last_row; ++row) {
+    const Index last_row = buckets.row(test.north() + buckets.slack);
+    for (Index row = buckets.row(test.south() - buckets.slack); row <= last_row; ++row) {
         const double low = buckets.south + row * buckets.size;
-        const auto [west, east] = test.between(low - slack, low + buckets.size + slack);
+        const auto [west, east] = test.between(low - buckets.slack, low + buckets.size + buckets.slack);
         if (!(west <= east)) continue;
-        const Index last_col = buckets.col(east + slack);
-        for (Index col = buckets.col(west - slack); col <= last_col; ++col) put(row * buckets.cols + col, t);
+        const Index last_col = buckets.col(east + buckets.slack);
+        for (Index col = buckets.col(west - buckets.slack); col <= last_col; ++col) put(row * buckets.cols + col, t);
     }
 }
 
@@ -132,7 +146,9 @@ Buckets buckets_over(const Triangulation& plane) {
     const double height = *north - *south;
     const double longer = std::max(width, height);
     const double wanted = std::sqrt(width * height / static_cast<double>(plane.triangles.size()));
-    Buckets buckets{*west, *south, std::max({wanted, longer / 1e4, std::numeric_limits<double>::min()}), 1, 1, {}};
+    const double size = std::max({wanted, longer / 1e4, std::numeric_limits<double>::min()});
+    const double largest = std::max({std::abs(*west), std::abs(*east), std::abs(*south), std::abs(*north)});
+    Buckets buckets{*west, *south, size, slack_for(size, largest), 1, 1, {}};
     buckets.cols = static_cast<Index>(width / buckets.size) + 1;
     buckets.rows = static_cast<Index>(height / buckets.size) + 1;
     buckets.bands = sort_into_bands(std::size_t(buckets.cols) * buckets.rows, [&](auto put) {
@@ -183,16 +199,17 @@ TriangleTest::Interval TriangleTest::between(double y_low, double y_high) const 
 }
 
 void cover(const Triangulation& plane, const Raster& raster, const std::function<void(const Claim&)>& visit) {
-    const Bands bands = bands_of_rows(plane, raster);
+    const Centers centers(raster);
+    const Bands bands = bands_of_rows(plane, centers);
     const auto claim_bands = [&](Index first_band, Index last_band) {
         Claim claim;
         std::vector<char> taken;
         for (Index band = first_band; band < last_band; ++band) {
-            const Range rows{band * rows_per_band, std::min((band + 1) * rows_per_band, raster.grid.rows)};
-            taken.assign(std::size_t(rows.last - rows.first) * raster.grid.cols, 0);
+            const Range rows{band * rows_per_band, std::min((band + 1) * rows_per_band, centers.rows)};
+            taken.assign(std::size_t(rows.last - rows.first) * centers.cols, 0);
             for (Index at = bands.start[band]; at < bands.start[band + 1]; ++at) {
                 claim.triangle = bands.triangles[at];
-                claim_cells(TriangleTest(plane, plane.triangles[claim.triangle]), raster, rows, taken, claim);
+                claim_cells(TriangleTest(plane, plane.triangles[claim.triangle]), centers, rows, taken, claim);
                 if (!claim.cells.empty()) visit(claim);
             }
         }
