@@ -140,8 +140,7 @@ SurfacePoint point_of(const TensionMesh& mesh, const TensionPatch& patch, const 
     std::array<double, 3> at = TriangleTest(plane_of(mesh), t).coordinates(p);
     for (double& coordinate : at) coordinate = std::max(coordinate, 0.0);
     const double sum = at[0] + at[1] + at[2];
-    if (!(sum > 0)) return {no_data, no_data, no_data};
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3; ++k) {  // without area all are 0/0
         if (at[k] / sum == 1) return corner_of(mesh, patch, t, k);
     }
     const Dual height =

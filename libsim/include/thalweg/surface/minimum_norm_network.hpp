@@ -47,10 +47,13 @@ struct MinimumNormNetwork {
 /// every round: after at most 32 rounds it is under rounding. No fill, no inner product, the same bytes for any number
 /// of threads.
 ///
+/// Where two vertices are much nearer to each other than to the rest and differ in height, the gradient there is steep
+/// and is felt over the longer edges as well; a tension that has no unit does little against it.
+///
 /// Accuracy: 1e-14 relative to the largest slope where the edges at a vertex span the plane; less in the direction in
 /// which they do not, by 1/sin² of the widest angle between their lines. Where all of them lie on one line to 1e-6 (a
 /// corner of triangles without area) the gradient across it is that of least length: none. Cost: linear; 1e5 vertices
-/// with 3e5 edges take 0.1 s on two cores. Throws Error for arrays of unequal length, corners that do not exist, an
+/// with 3e5 edges take 0.1 to 0.2 s. Throws Error for arrays of unequal length, corners that do not exist, an
 /// edge of no length, a height or place that is no number, a tension that is negative or no number, and extra tension
 /// on what is no edge.
 MinimumNormNetwork minimum_norm_network(const TensionMesh&);
