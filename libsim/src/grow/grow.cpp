@@ -21,10 +21,12 @@ namespace thalweg::grow {
 namespace {
 
 // Shares of C (SCIENCE, after Kelley et al. 1988).
-constexpr double shortest_split_link = 0.2;
+constexpr double shortest_split_link = 0.2;  // halved, when nothing else can grow, down to the second value
+constexpr double shortest_split_at_last = 0.02;
 constexpr double room_beyond_source = 0.5;
 constexpr double least_width_of_side = 0.5;
-constexpr double shortest_link = 0.01;
+constexpr double shortest_tributary = 0.5;  // of the shortest link that is split
+constexpr double density_met = 0.01;        // so much length may be missing: under 1 % in a basin of one C²
 
 constexpr Index draws_per_step = 16;
 constexpr Index tries_per_side = 4;
@@ -61,6 +63,7 @@ class Grower {
     void enter(Index link);
     bool take_candidate(Index& link);
     bool density_reached() const;
+    bool ease_rules();
     void lengthen(Index link);
     bool add_tributary(Index link);
     Side drawn_side(const GrowingLink&, double share_of_link, double number_drawn) const;
@@ -69,15 +72,17 @@ class Grower {
     StopReason grow_until_stopped();
 
     GrowingTree tree_;
-    const Dials dials_;
+    Dials dials_;
     const double c_;
     const double wanted_length_;
     const double link_limit_;
+    double shortest_split_;  ///< m
     std::priority_queue<Candidate> candidates_;
     std::vector<std::uint8_t> is_refused_;
     std::uint64_t step_ = 0;
     Index lengthened_ = 0;
     Index refused_ = 0;
+    Index last_resorts_ = 0;
 };
 
 Grower::Grower(GrowingTree tree, const Dials& dials, double basin_area)
@@ -85,7 +90,8 @@ Grower::Grower(GrowingTree tree, const Dials& dials, double basin_area)
       dials_(dials),
       c_(dials.channel_maintenance_m),
       wanted_length_(basin_area / c_),
-      link_limit_(std::min(1000 + 400 * basin_area / (c_ * c_), 4e8)) {
+      link_limit_(std::min(1000 + 400 * basin_area / (c_ * c_), 4e8)),
+      shortest_split_(shortest_split_link * c_) {
     tree_.links[0].sidewall_slope = drawn_sidewalls(0);
     enter(0);
 }
@@ -109,7 +115,7 @@ double Grower::missing_length() const {
 
 void Grower::enter(Index link) {
     is_refused_.resize(tree_.links.size(), 0);
-    const bool long_enough = tree_.links[link].length_m >= shortest_split_link * c_;
+    const bool long_enough = tree_.links[link].length_m >= shortest_split_;
     const bool may_grow = long_enough || beyond_source(link) > room_beyond_source * c_;
     if (excess(link) > 0 && may_grow && !is_refused_[link]) candidates_.push({excess(link), link});
 }
@@ -125,8 +131,23 @@ bool Grower::take_candidate(Index& link) {
     return false;
 }
 
-/// Less than the shortest link is missing.
-bool Grower::density_reached() const { return missing_length() < shortest_link * c_; }
+bool Grower::density_reached() const { return missing_length() < density_met * c_; }
+
+/// Where straight lines have run into dead ends and the density is still to be met: first exterior links may turn, then
+/// shorter links may be split and shorter tributaries made. All links, also those refused, get another chance.
+bool Grower::ease_rules() {
+    if (dials_.stop != Stop::density || shortest_split_ <= shortest_split_at_last * c_) return false;
+    if (dials_.upstream_link == UpstreamLink::keeps_line) {
+        dials_.upstream_link = UpstreamLink::turns;
+    } else {
+        shortest_split_ = std::max(shortest_split_ / 2, shortest_split_at_last * c_);
+    }
+    ++last_resorts_;
+    std::fill(is_refused_.begin(), is_refused_.end(), 0);
+    refused_ = 0;
+    for (Index link = 0; link < tree_.links.size(); ++link) enter(link);
+    return true;
+}
 
 /// Moves a source on, straight ahead.
 void Grower::lengthen(Index number) {
@@ -193,6 +214,7 @@ bool Grower::add_tributary(Index number) {
             .side = side,
             .share_of_way = drawn_share(dials_.mean_length, dials_.delta_length, uniform(Draw::length, draw_number)),
             .sidewall_slope = drawn_sidewalls(upper + 1),
+            .shortest_m = shortest_tributary * shortest_split_,
             .longest_m = missing_length()};
         const auto plan = plan_junction(tree_, dials_, number, draw);
         if (!plan) continue;
@@ -208,7 +230,10 @@ StopReason Grower::grow_until_stopped() {
     for (;; ++step_) {
         if (density_reached()) return StopReason::density_reached;
         if (static_cast<double>(tree_.links.size()) > link_limit_) return StopReason::link_limit;
-        if (!take_candidate(link)) return StopReason::no_candidate;
+        if (!take_candidate(link)) {
+            if (!ease_rules()) return StopReason::no_candidate;
+            continue;
+        }
         if (beyond_source(link) > room_beyond_source * c_) {
             lengthen(link);
         } else if (!add_tributary(link)) {
@@ -220,7 +245,7 @@ StopReason Grower::grow_until_stopped() {
 
 Growth Grower::run(const Point& origin) {
     const StopReason reason = grow_until_stopped();
-    return {finished(tree_, origin), reason, lengthened_, refused_};
+    return {finished(tree_, origin), reason, lengthened_, refused_, last_resorts_};
 }
 
 /// The basin in coordinates relative to the outlet, which is a corner of the outline.

@@ -12,7 +12,7 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double shortest_share_of_c = 0.01;   // of C: links
+constexpr double shortest_link_of_c = 1e-3;
 constexpr double shortest_divide_of_c = 1e-6;  // of C
 constexpr double tolerance_of_c = 1e-9;  // of C: far above rounding in a basin of a million links, far below a link
 constexpr double furthest_turned_link = 0.95;  // of the way to the polygon's edge
@@ -119,16 +119,19 @@ bool can_be_told_apart(const GrowingTree& tree, const JunctionPlan& plan, double
     return true;
 }
 
-bool set_lengths(const GrowingLink& link, double shortest, JunctionPlan& plan) {
+/// Whether the links are long enough; only then the tributary is cut to what is missing.
+bool set_lengths(const GrowingLink& link, double shortest_link, JunctionPlan& plan) {
     plan.upstream_length_m = (1 - plan.draw.share_of_link) * link.length_m;
     for (const PlannedRay& planned : std::span(plan.rays).first(plan.ray_count)) {
         if (planned.arm == Arm::tributary) {
-            plan.tributary_length_m = std::min(plan.draw.share_of_way * planned.hit.distance, plan.draw.longest_m);
+            plan.tributary_length_m = plan.draw.share_of_way * planned.hit.distance;
         } else if (planned.arm == Arm::upstream_link) {
             plan.upstream_length_m = std::min(plan.upstream_length_m, furthest_turned_link * planned.hit.distance);
         }
     }
-    return std::min(plan.tributary_length_m, plan.upstream_length_m) >= shortest;
+    const bool fits = plan.tributary_length_m >= plan.draw.shortest_m && plan.upstream_length_m >= shortest_link;
+    plan.tributary_length_m = std::min(plan.tributary_length_m, plan.draw.longest_m);
+    return fits;
 }
 
 /// Draws a ray's line; returns its half-edge from the junction.
@@ -193,7 +196,7 @@ std::optional<JunctionPlan> plan_junction(const GrowingTree& tree, const Dials& 
     plan.turn_rad = turns ? junction_angle(below, gradient(dials.flint, plan.magnitude)) : 0;
     set_directions(link, dials.flint, (1 / norm(along)) * along, plan);
     meet_polygons(tree, tolerance_of_c * c, plan);
-    if (!can_be_told_apart(tree, plan, c) || !set_lengths(link, shortest_share_of_c * c, plan)) return std::nullopt;
+    if (!can_be_told_apart(tree, plan, c) || !set_lengths(link, shortest_link_of_c * c, plan)) return std::nullopt;
     return plan;
 }
 

@@ -15,7 +15,8 @@ struct TributaryDraw {
     Side side;
     double share_of_way;  ///< to the polygon's edge
     std::array<double, 2> sidewall_slope;
-    double longest_m;  ///< it is cut to this
+    double shortest_m;  ///< no room for less
+    double longest_m;   ///< a longer one is cut
 };
 
 /// What leaves a junction other than the downstream link.
@@ -42,8 +43,8 @@ struct JunctionPlan {
     double upstream_length_m = 0;
 };
 
-/// A plan, or nothing if the tributary or a turned upstream link would be shorter than C/100 or the lines too close to
-/// tell apart.
+/// A plan, or nothing if the tributary or a turned upstream link would be too short, or the lines too close to tell
+/// apart.
 std::optional<JunctionPlan> plan_junction(const GrowingTree&, const Dials&, Index link, const TributaryDraw&);
 
 /// Carries it out: three links where there was one. The lower half keeps the link's number, the upper half and the

@@ -50,20 +50,25 @@ enum class StopReason : std::uint8_t {
 struct Growth {
     Network network;
     StopReason stopped;
-    Index lengthened;  ///< times that a source moved on
-    Index refused;     ///< links with no room for a tributary, though their polygons were large enough
+    Index lengthened;    ///< times that a source moved on
+    Index refused;       ///< links with no room for a tributary, though their polygons were large enough
+    Index last_resorts;  ///< times that the rules were eased to meet the density; 0 in basins that the trunk spans
 };
 
 /// Grows a network from the trunk alone.
 ///
 /// The link with the largest excess A − C·L grows next (A its polygons' area, L its length; the older link on ties), if
-/// it is above 0. An exterior link with more than C/2 of polygon beyond its source is lengthened: the drawn share
-/// of what is beyond. Otherwise a link of at least C/5 gets a tributary: at the drawn place (kept in 0.05–0.95), at
-/// Howard's angle for the magnitudes it has at that time, of the drawn share (0.05–0.95) of the way to the polygon's
-/// edge. Its side: in the lower third of a stream the obtuse one with `lower_bias`, in the middle third the one
-/// opposite the next tributary downstream with `middle_bias`, else even odds (Flint 1980); but never a side with less
-/// than C/2 of area per length. No tributary is shorter than C/100: up to four places are drawn on that side and four
-/// on the other before the link counts as refused. The last tributary is as long as is missing, so the density is met.
+/// it is above 0. An exterior link with more than C/2 of polygon beyond its source is lengthened by the drawn share
+/// of that. Otherwise a link of at least C/5 gets a tributary: at the drawn place (kept in 0.05–0.95), at Howard's
+/// angle for the magnitudes it has at that time, of the drawn share (0.05–0.95) of the way to the polygon's edge. Its
+/// side: in the lower third of a stream the obtuse one with `lower_bias`, in the middle third the one opposite the next
+/// tributary downstream with `middle_bias`, else even odds (Flint 1980); but never a side with less than C/2 of area
+/// per length. No tributary is drawn shorter than C/10: four places are tried on that side and four on the other before
+/// the link is refused. The last tributary is as long as is missing, so that the density is met.
+///
+/// Straight lines run into dead ends: a basin that goes on beside a link too short to be split. If the density is not
+/// met when no link is left, exterior links may turn; after that the lengths C/5 and C/10 are halved, again and again
+/// down to C/50 and C/100. `Growth::last_resorts` says how often this was needed.
 ///
 /// Three divides leave each junction (`divide_direction`) and run to the nearest side of the polygon. A ray that passes
 /// a vertex within 1e-9·C ends there.
