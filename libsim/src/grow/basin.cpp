@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "grow/plane.hpp"
 #include "thalweg/core/error.hpp"
@@ -13,6 +12,8 @@
 
 namespace thalweg::grow {
 namespace {
+
+constexpr double on_outline = 1e-6;  // of the basin's size: nearer points are on the outline
 
 Point nearest_on_segment(const Point& a, const Point& b, const Point& p) {
     const double at = dot(p - a, b - a) / dot(b - a, b - a);
@@ -42,21 +43,23 @@ bool is_inside(const Polygon& outline, const Point& p) {
     return inside;
 }
 
-/// The outlet on the outline: its nearest point, a corner if that is as near as can be told.
-Point outlet_on_outline(const Polygon& outline, const Point& outlet) {
-    const double tolerance = 1e-6 * bounding_diagonal(outline);
-    Point nearest{};
-    double distance = std::numeric_limits<double>::infinity();
+/// Nearest point of the outline.
+Point nearest_on_outline(const Polygon& outline, const Point& p) {
+    Point nearest = outline[0];
     for (std::size_t i = 0; i < outline.size(); ++i) {
-        const Point on_side = nearest_on_segment(outline[i], outline[(i + 1) % outline.size()], outlet);
-        if (norm(on_side - outlet) < distance) {
-            nearest = on_side;
-            distance = norm(on_side - outlet);
-        }
+        const Point on_side = nearest_on_segment(outline[i], outline[(i + 1) % outline.size()], p);
+        if (norm(on_side - p) < norm(nearest - p)) nearest = on_side;
     }
-    if (!(distance <= tolerance)) {
+    return nearest;
+}
+
+/// The outlet on the outline, in a corner if that is as near as can be told.
+Point outlet_on_outline(const Polygon& outline, const Point& outlet) {
+    const double tolerance = on_outline * bounding_diagonal(outline);
+    const Point nearest = nearest_on_outline(outline, outlet);
+    if (!(norm(nearest - outlet) <= tolerance)) {
         throw Error(fmt::format("the trunk's outlet ({}, {}) is {:.6g} m off the basin's outline: it must lie on it",
-                                outlet.x, outlet.y, distance));
+                                outlet.x, outlet.y, norm(nearest - outlet)));
     }
     for (const Point& corner : outline) {
         if (norm(corner - nearest) <= tolerance) return corner;
@@ -64,11 +67,14 @@ Point outlet_on_outline(const Polygon& outline, const Point& outlet) {
     return nearest;
 }
 
+void check_source(const Polygon& outline, const Point& source) {
+    const double off_outline = norm(nearest_on_outline(outline, source) - source);
+    if (is_inside(outline, source) && off_outline > on_outline * bounding_diagonal(outline)) return;
+    throw Error(fmt::format("the trunk's source ({}, {}) is not inside the basin's outline", source.x, source.y));
+}
+
+/// The source is inside; the outlet may be a corner.
 void check_trunk(const Basin& basin) {
-    if (!is_inside(basin.outline, basin.source)) {
-        throw Error(fmt::format("the trunk's source ({}, {}) is not inside the basin's outline", basin.source.x,
-                                basin.source.y));
-    }
     for (std::size_t i = 0; i < basin.outline.size(); ++i) {
         const Point& a = basin.outline[i];
         const Point& b = basin.outline[(i + 1) % basin.outline.size()];
@@ -100,6 +106,7 @@ Basin checked_basin(const Basin& basin) {
         throw Error(fmt::format("the base level is {} m: it must be a finite elevation", basin.base_level_m));
     }
     checked.outlet = outlet_on_outline(checked.outline, basin.outlet);
+    check_source(checked.outline, checked.source);
     check_trunk(checked);
     return checked;
 }
