@@ -477,6 +477,21 @@ TEST_CASE("Report: bifurcation and Tokunaga ratios of grown networks beside Shre
     report_statistics(Stop::links, UpstreamLink::turns, "links, turning");
 }
 
+TEST_CASE("Report: angles as drawn beside Howard's at the final magnitudes", "[.report]") {
+    Dials dials;
+    dials.channel_maintenance_m = 60;
+    const Network network = grow::grow(square_basin(10000), dials).network;
+    std::vector<double> drawn, final;
+    for (const Junction& junction : network.junctions) {
+        const double below = gradient(dials.flint, network.magnitude[junction.downstream]);
+        const double inflow = gradient(dials.flint, network.magnitude[junction.tributary]);
+        drawn.push_back(junction.angle_rad * 180 / std::numbers::pi);
+        final.push_back(junction_angle(below, inflow) * 180 / std::numbers::pi);
+    }
+    WARN("E1 as drawn " << spread(drawn).mean << " +- " << spread(drawn).sd << " degrees, Howard's in the end "
+                        << spread(final).mean << " +- " << spread(final).sd << ", " << drawn.size() << " junctions");
+}
+
 TEST_CASE("Report: seconds of growth for a thousand to a million links", "[.report]") {
     for (const double links : {1e3, 1e4, 1e5, 1e6}) {
         Dials dials;
