@@ -16,58 +16,57 @@ Index weight(Index mark) { return mark & 1; }  // sources have odd numbers
 
 }  // namespace
 
-SourceOrder::SourceOrder() : left_{none}, right_{none}, parent_{none}, sources_{0}, priority_{priority_of(0)} {
-    insert(0);
-}
+SourceOrder::SourceOrder() : nodes_{{none, none, none, 0}}, priority_{priority_of(0)} { insert(0); }
 
 void SourceOrder::add_stream(Index behind) {
-    const auto opening_mark = static_cast<Index>(left_.size());
+    const auto opening_mark = static_cast<Index>(nodes_.size());
     insert(behind);
     insert(opening_mark);
 }
 
 void SourceOrder::insert(Index behind) {
-    const auto mark = static_cast<Index>(left_.size());
+    const auto mark = static_cast<Index>(nodes_.size());
     Index parent = behind;
-    const bool as_right = right_[behind] == none;
+    const bool as_right = nodes_[behind].right == none;
     if (!as_right) {
-        parent = right_[behind];
-        while (left_[parent] != none) parent = left_[parent];
+        parent = nodes_[behind].right;
+        while (nodes_[parent].left != none) parent = nodes_[parent].left;
     }
-    (as_right ? right_ : left_)[parent] = mark;
-    left_.push_back(none);
-    right_.push_back(none);
-    parent_.push_back(parent);
-    sources_.push_back(weight(mark));
+    (as_right ? nodes_[parent].right : nodes_[parent].left) = mark;
+    nodes_.push_back({none, none, parent, weight(mark)});
     priority_.push_back(priority_of(mark));
     if (weight(mark) > 0) {
-        for (Index above = parent; above != none; above = parent_[above]) ++sources_[above];
+        for (Index above = parent; above != none; above = nodes_[above].parent) ++nodes_[above].sources;
     }
-    while (parent_[mark] != none && priority_[parent_[mark]] < priority_[mark]) rotate_up(mark);
+    while (nodes_[mark].parent != none && priority_[nodes_[mark].parent] < priority_[mark]) rotate_up(mark);
 }
 
 void SourceOrder::rotate_up(Index mark) {
-    const Index parent = parent_[mark];
-    const Index above = parent_[parent];
-    const bool from_left = left_[parent] == mark;
-    const Index inner = from_left ? right_[mark] : left_[mark];
-    (from_left ? left_ : right_)[parent] = inner;
-    if (inner != none) parent_[inner] = parent;
-    (from_left ? right_ : left_)[mark] = parent;
-    parent_[parent] = mark;
-    parent_[mark] = above;
-    if (above != none) (left_[above] == parent ? left_ : right_)[above] = mark;
-    const Index all = sources_[parent];
-    sources_[parent] = all - sources_[mark] + (inner == none ? 0 : sources_[inner]);
-    sources_[mark] = all;
+    Node& risen = nodes_[mark];
+    const Index parent = risen.parent;
+    Node& sunk = nodes_[parent];
+    const bool from_left = sunk.left == mark;
+    const Index inner = from_left ? risen.right : risen.left;
+    (from_left ? sunk.left : sunk.right) = inner;
+    if (inner != none) nodes_[inner].parent = parent;
+    (from_left ? risen.right : risen.left) = parent;
+    risen.parent = sunk.parent;
+    sunk.parent = mark;
+    if (risen.parent != none) {
+        Node& above = nodes_[risen.parent];
+        (above.left == parent ? above.left : above.right) = mark;
+    }
+    const Index all = sunk.sources;
+    sunk.sources = all - risen.sources + (inner == none ? 0 : nodes_[inner].sources);
+    risen.sources = all;
 }
 
 Index SourceOrder::rank(Index mark) const {
-    Index sources = (left_[mark] == none ? 0 : sources_[left_[mark]]) + weight(mark);
-    for (Index at = mark; parent_[at] != none; at = parent_[at]) {
-        const Index parent = parent_[at];
-        if (right_[parent] != at) continue;
-        sources += sources_[parent] - sources_[at];
+    const Index left = nodes_[mark].left;
+    Index sources = (left == none ? 0 : nodes_[left].sources) + weight(mark);
+    for (Index at = mark; nodes_[at].parent != none; at = nodes_[at].parent) {
+        const Node& parent = nodes_[nodes_[at].parent];
+        if (parent.right == at) sources += parent.sources - nodes_[at].sources;
     }
     return sources;
 }

@@ -33,8 +33,12 @@ class SourceOrder {
     void rotate_up(Index mark);
     Index rank(Index mark) const;  ///< number of sources up to and with this mark
 
-    std::vector<Index> left_, right_, parent_;
-    std::vector<Index> sources_;  ///< in the subtree
+    struct Node {
+        Index left, right, parent;
+        Index sources;  ///< in the subtree
+    };
+
+    std::vector<Node> nodes_;  ///< per mark
     std::vector<std::uint64_t> priority_;
 };
 

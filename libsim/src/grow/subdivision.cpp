@@ -20,28 +20,26 @@ Subdivision::Subdivision(const Polygon& outline) : points_(outline) {
 
 Index Subdivision::add_pair(Index from, Index to, EdgeKind kind) {
     const Index half_edge = half_edges();
-    origin_.insert(origin_.end(), {from, to});
-    next_.insert(next_.end(), {none, none});
-    previous_.insert(previous_.end(), {none, none});
-    kind_.push_back(kind);
+    sides_.push_back({from, none, none, kind});
+    sides_.push_back({to, none, none, kind});
     return half_edge;
 }
 
 void Subdivision::follow(Index first, Index second) {
-    next_[first] = second;
-    previous_[second] = first;
+    sides_[first].next = second;
+    sides_[second].previous = first;
 }
 
 Index Subdivision::insert_vertex(Index half_edge, const Point& place) {
     const Index vertex = vertices();
     points_.push_back(place);
     const Index back = half_edge ^ 1;
-    const Index onward = add_pair(vertex, origin_[back], kind(half_edge));
+    const Index onward = add_pair(vertex, sides_[back].origin, kind(half_edge));
     // An edge that hangs in a polygon turns round at its end: there the half-edge's next is its own other direction.
-    const bool turns_round = next_[half_edge] == back;
-    const Index after = next_[half_edge];
-    const Index before = previous_[back];
-    origin_[back] = vertex;
+    const bool turns_round = sides_[half_edge].next == back;
+    const Index after = sides_[half_edge].next;
+    const Index before = sides_[back].previous;
+    sides_[back].origin = vertex;
     follow(half_edge, onward);
     follow(onward ^ 1, back);
     if (turns_round) {
@@ -54,9 +52,9 @@ Index Subdivision::insert_vertex(Index half_edge, const Point& place) {
 }
 
 Index Subdivision::connect(Index from, Index to, EdgeKind kind) {
-    const Index edge = add_pair(origin_[from], origin_[to], kind);
-    const Index before_from = previous_[from];
-    const Index before_to = previous_[to];
+    const Index edge = add_pair(sides_[from].origin, sides_[to].origin, kind);
+    const Index before_from = sides_[from].previous;
+    const Index before_to = sides_[to].previous;
     follow(before_from, edge);
     follow(edge, to);
     follow(before_to, edge ^ 1);
@@ -66,19 +64,19 @@ Index Subdivision::connect(Index from, Index to, EdgeKind kind) {
 
 void Subdivision::remove(Index half_edge) {
     const Index back = half_edge ^ 1;
-    const Index after_target = next_[half_edge];
-    const Index before_target = previous_[back];
-    if (previous_[half_edge] != back) follow(previous_[half_edge], next_[back]);
+    const Index after_target = sides_[half_edge].next;
+    const Index before_target = sides_[back].previous;
+    if (sides_[half_edge].previous != back) follow(sides_[half_edge].previous, sides_[back].next);
     if (after_target != back) follow(before_target, after_target);
-    next_[half_edge] = next_[back] = none;
+    sides_[half_edge].next = sides_[back].next = none;
 }
 
 double Subdivision::area(Index half_edge) const {
-    const Point& reference = points_[origin_[half_edge]];  // near coordinates keep their digits
+    const Point& reference = points_[sides_[half_edge].origin];  // near coordinates keep their digits
     double twice_area = 0;
-    Index at = next_[half_edge];
-    Point a = points_[origin_[at]] - reference;
-    for (; at != half_edge; at = next_[at]) {
+    Index at = sides_[half_edge].next;
+    Point a = points_[sides_[at].origin] - reference;
+    for (; at != half_edge; at = sides_[at].next) {
         const Point b = points_[target(at)] - reference;
         twice_area += cross(a, b);
         a = b;

@@ -18,14 +18,14 @@ class Subdivision {
     /// One polygon; half-edge 2i runs from corner i to the next one.
     explicit Subdivision(const Polygon& counter_clockwise);
 
-    Index next(Index half_edge) const { return next_[half_edge]; }
-    Index origin(Index half_edge) const { return origin_[half_edge]; }
-    Index target(Index half_edge) const { return origin_[half_edge ^ 1]; }
-    EdgeKind kind(Index half_edge) const { return kind_[half_edge >> 1]; }
+    Index next(Index half_edge) const { return sides_[half_edge].next; }
+    Index origin(Index half_edge) const { return sides_[half_edge].origin; }
+    Index target(Index half_edge) const { return sides_[half_edge ^ 1].origin; }
+    EdgeKind kind(Index half_edge) const { return sides_[half_edge & ~Index{1}].kind; }
     const Point& point(Index vertex) const { return points_[vertex]; }
-    Index half_edges() const { return static_cast<Index>(origin_.size()); }
+    Index half_edges() const { return static_cast<Index>(sides_.size()); }
     Index vertices() const { return static_cast<Index>(points_.size()); }
-    bool is_removed(Index half_edge) const { return next_[half_edge] == none; }
+    bool is_removed(Index half_edge) const { return sides_[half_edge].next == none; }
 
     void move_vertex(Index vertex, const Point& to) { points_[vertex] = to; }
 
@@ -40,17 +40,24 @@ class Subdivision {
     /// Takes an edge away: the polygons on its sides become one. An end without another edge is left without any.
     void remove(Index half_edge);
 
-    void set_kind(Index half_edge, EdgeKind kind) { kind_[half_edge >> 1] = kind; }
+    void set_kind(Index half_edge, EdgeKind kind) { sides_[half_edge & ~Index{1}].kind = kind; }
 
     /// Area of the half-edge's polygon, m².
     double area(Index half_edge) const;
 
   private:
+    /// What a walk around a polygon needs, both directions of an edge in one cache line.
+    struct HalfEdge {
+        Index origin;
+        Index next;
+        Index previous;
+        EdgeKind kind;  ///< kept with the even one
+    };
+
     Index add_pair(Index from, Index to, EdgeKind);
     void follow(Index first, Index second);
 
-    std::vector<Index> origin_, next_, previous_;  // per half-edge
-    std::vector<EdgeKind> kind_;                   // per edge
+    std::vector<HalfEdge> sides_;
     std::vector<Point> points_;
 };
 
