@@ -52,7 +52,7 @@ struct Growth {
     StopReason stopped;
     Index lengthened;    ///< times that a source moved on
     Index refused;       ///< links with no room for a tributary, though their polygons were large enough
-    Index last_resorts;  ///< times that the rules were eased to meet the density; 0 in basins that the trunk spans
+    Index last_resorts;  ///< times that the rules were eased to meet the density
 };
 
 /// Grows a network from the trunk alone.
