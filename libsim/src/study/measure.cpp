@@ -49,6 +49,22 @@ ChannelStatistics channel_statistics(const channel::StreamNetwork& network, doub
     return c;
 }
 
+NetworkStatistics network_statistics(const RoutedTerrain& terrain, const channel::StreamNetwork& network) {
+    const auto longest = channel::longest_upstream_lengths(terrain.graph);
+    NetworkStatistics n{.tokunaga = channel::tokunaga(network),
+                        .hack = channel::hack_law(network, terrain.drainage_area_m2, longest),
+                        .links = channel::link_lengths(network),
+                        .flint = channel::flint_law(network),
+                        .junction_reach_m = channel::junction_reach(network),
+                        .junctions = {}};
+    const channel::OffsetOf unknown = [](Index, Index) {
+        return Point{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+    };
+    n.junctions = channel::junction_angles(network, terrain.offset_m ? terrain.offset_m : unknown, n.junction_reach_m,
+                                           n.flint.exponent.value);
+    return n;
+}
+
 /// Relief, hypsometric integral and order of every basin in one pass over the nodes.
 std::vector<BasinStatistics> basin_statistics(const RoutedTerrain& terrain, std::span<const double> ground_m,
                                               const std::vector<terrain::Basin>& basins, const Statistics& s) {
@@ -198,6 +214,7 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
                                            : std::numeric_limits<double>::quiet_NaN();
     s.strahler = channel::strahler_statistics(s.network);
     s.horton = channel::horton_ratios(s.strahler);
+    s.network_laws = network_statistics(terrain, s.network);
     s.slope_area = channel::fit_slope_area(channel::slope_area_bins(slopes));
     s.slope_area_points = std::move(slopes);
     return s;
@@ -217,6 +234,7 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
     m.terrain.complete = terrain::complete_catchments(raster.grid, m.terrain.graph, boundary);
     if (options.conditioning == Conditioning::carve) surface = terrain::carve(m.terrain.graph, surface);
     report_changes(raster, surface, m.conditioning);
+    m.terrain.offset_m = channel::offsets(raster.grid);
     m.terrain.elevation_m = std::move(surface);
 
     m.valid_cells = static_cast<Index>(m.terrain.graph.order.size());

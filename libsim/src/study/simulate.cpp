@@ -110,6 +110,7 @@ Finished finish(const Topology& topology, const evolve::River& river, const Doma
     f.terrain.cell_area_m2 = terrain::cell_areas(topology);
     f.terrain.drainage_area_m2 = drainage.area_m2;
     f.terrain.complete.assign(topology.size(), 1);
+    f.terrain.offset_m = channel::offsets(topology);
     std::vector<std::uint8_t> free(f.talus_limited);
     for (std::uint8_t& flag : free) flag = !flag;
     f.river_slopes = channel::node_slopes(f.terrain.graph, f.terrain.drainage_area_m2, f.terrain.elevation_m, free);

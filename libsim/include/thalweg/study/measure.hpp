@@ -6,8 +6,12 @@
 #include <vector>
 
 #include "thalweg/channel/horton.hpp"
+#include "thalweg/channel/laws.hpp"
+#include "thalweg/channel/links.hpp"
 #include "thalweg/channel/network.hpp"
+#include "thalweg/channel/profile.hpp"
 #include "thalweg/channel/slope_area.hpp"
+#include "thalweg/channel/tokunaga.hpp"
 #include "thalweg/core/raster.hpp"
 #include "thalweg/terrain/basins.hpp"
 #include "thalweg/terrain/hypsometry.hpp"
@@ -27,6 +31,7 @@ struct MeasureOptions {
     terrain::EdgeBasins edge_basins = terrain::EdgeBasins::drop;
     std::optional<Index> catchment_outlet{};  ///< the raster is one catchment that leaves here: its
                                               ///< rim is a divide, not a cut
+    double theta = 0.45;                      ///< concavity for chi and ksn
 };
 
 /// A terrain once it is routed: a DEM, a simulated mesh and a grown network look the same from here on.
@@ -36,6 +41,7 @@ struct RoutedTerrain {
     std::vector<double> cell_area_m2;
     std::vector<double> drainage_area_m2;
     std::vector<std::uint8_t> complete;  ///< 1 where the whole upslope area is known
+    channel::OffsetOf offset_m;          ///< from node to node; empty: angles are not known
 };
 
 struct BasinStatistics {
@@ -57,12 +63,23 @@ struct ChannelStatistics {
     Index max_strahler, max_shreve;
 };
 
+/// What is counted and fitted on the links of a network.
+struct NetworkStatistics {
+    channel::Tokunaga tokunaga;
+    PowerLaw hack;  ///< main-stream length (m) of area (m²)
+    channel::LinkLengths links;
+    PowerLaw flint;  ///< slope of 2·magnitude − 1
+    double junction_reach_m;
+    channel::JunctionAngles junctions;
+};
+
 /// Every statistic of one terrain.
 struct Statistics {
     terrain::Hypsometry hypsometry;
     ChannelStatistics channels;
     std::vector<channel::OrderStatistics> strahler;
     channel::HortonRatios horton;
+    NetworkStatistics network_laws;
     channel::SlopeArea slope_area;
     std::vector<channel::SlopeAreaPoint> slope_area_points;
     std::vector<BasinStatistics> basins;
