@@ -148,6 +148,22 @@ double quantile(std::vector<double> values, double share) {
     return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
+double kolmogorov_distance(std::vector<double> a, std::vector<double> b) {
+    if (a.empty() || b.empty()) return nan;
+    std::ranges::sort(a);
+    std::ranges::sort(b);
+    double largest = 0;
+    for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+        const double value = std::min(a[i], b[j]);
+        while (i < a.size() && a[i] <= value) ++i;
+        while (j < b.size() && b[j] <= value) ++j;
+        const double gap = static_cast<double>(i) / static_cast<double>(a.size()) -
+                           static_cast<double>(j) / static_cast<double>(b.size());
+        largest = std::max(largest, std::abs(gap));
+    }
+    return largest;
+}
+
 double student_t95(double degrees_of_freedom) {
     if (!(degrees_of_freedom >= 1)) return nan;
     if (degrees_of_freedom > 1e4) return student_t95_of_many(degrees_of_freedom);

@@ -152,6 +152,7 @@ Json terrain_json(const TerrainInput& input, const Statistics& s, const Position
                    {"RS", ratio_json(s.horton.slope)}}}};
     summary.update(network_json(s.network_laws, notes));
     summary["slope_area"] = slope_area_json(s.slope_area);
+    summary["chi"] = chi_json(s.chi, notes);
     summary["basins"] = basins_json(s, position);
     return summary;
 }

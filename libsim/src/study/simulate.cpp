@@ -117,6 +117,7 @@ Finished finish(const Topology& topology, const evolve::River& river, const Doma
     MeasureOptions options;
     options.channel_area_m2 = e.study.channel_area_m2;
     f.statistics = measure(f.terrain, f.terrain.elevation_m, options, f.river_slopes);
+    f.statistics.chi = measure_chi(f.terrain, options, f.statistics.channels.threshold_area_m2, 0);
     return f;
 }
 
@@ -231,6 +232,8 @@ void write_results(const Heightfield& h, const Finished& f, const Outcome& o, co
     io::write_csv(folder / "slope_area_nodes.csv", node_table(f));
     io::write_csv(folder / "slope_area.csv", slope_area_table(s.slope_area.bins));
     io::write_csv(folder / "hypsometry.csv", hypsometry_table(s.hypsometry));
+    io::write_csv(folder / "chi.csv", chi_table(s, position));
+    io::write_csv(folder / "links.csv", link_values(s.network));
     io::write_csv(folder / "history.csv", history_table(o.history));
 }
 

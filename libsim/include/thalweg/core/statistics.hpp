@@ -49,6 +49,10 @@ double standard_deviation(std::span<const double> values);
 /// smallest, 0.5: the median, 1: the largest); NaN for no values.
 double quantile(std::vector<double> values, double share);
 
+/// Largest difference between the shares of two samples that lie at or below any value (Kolmogorov–Smirnov), 0 to 1;
+/// NaN where a sample is empty.
+double kolmogorov_distance(std::vector<double> a, std::vector<double> b);
+
 /// Two-sided 95 % quantile of Student's t with the given degrees of freedom (≥ 1).
 double student_t95(double degrees_of_freedom);
 

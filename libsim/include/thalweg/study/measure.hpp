@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "thalweg/channel/extent.hpp"
 #include "thalweg/channel/horton.hpp"
 #include "thalweg/channel/laws.hpp"
 #include "thalweg/channel/links.hpp"
@@ -71,6 +72,17 @@ struct NetworkStatistics {
     PowerLaw flint;  ///< slope of 2·magnitude − 1
     double junction_reach_m;
     channel::JunctionAngles junctions;
+    channel::WidthFunction width;
+    PowerLaw area_exceedance;  ///< of the largest basin; the exponent is −β
+};
+
+/// Long profiles of the channels in χ, at the asked concavity.
+struct ChiStatistics {
+    double theta, reference_area_m2;
+    channel::Profile profile;
+    std::vector<double> chi_m, ksn;  ///< per node of the profile; NaN where ksn is not known
+    double ksn_median;
+    Estimate theta_best;
 };
 
 /// Every statistic of one terrain.
@@ -82,6 +94,7 @@ struct Statistics {
     NetworkStatistics network_laws;
     channel::SlopeArea slope_area;
     std::vector<channel::SlopeAreaPoint> slope_area_points;
+    ChiStatistics chi;
     std::vector<BasinStatistics> basins;
     channel::StreamNetwork network;
     std::vector<Index> basin_of;  ///< number of each node's basin, `none` outside
@@ -92,6 +105,10 @@ struct Statistics {
 /// any conditioning, of which the hypsometry and the relief are taken.
 Statistics measure(const RoutedTerrain&, std::span<const double> ground_m, const MeasureOptions&,
                    std::vector<channel::SlopeAreaPoint> slopes);
+
+/// Long profiles on the terrain along which slopes are measured (carved, on a raster): ksn over falls of at least
+/// `drop_m`, channels from `threshold_m2`.
+ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions&, double threshold_m2, double drop_m);
 
 /// How a DEM was made to drain.
 struct ConditioningReport {
