@@ -84,6 +84,26 @@ TEST_CASE("A steady landscape fitted on its nodes gives back k and m") {
     }
 }
 
+TEST_CASE("A steady landscape shows its concavity and steepness in chi, on its nodes and as a DEM") {
+    const TempFolder temp;
+    for (const MeshKind mesh : {MeshKind::tin, MeshKind::raster}) {
+        const Experiment e = island(mesh, 1, 0.45, 20000);
+        const std::string name = std::to_string(static_cast<int>(mesh));
+        const Json on_nodes = simulated(e, temp / name)["terrain"]["chi"];
+        CHECK(on_nodes["ksn_median"].get<double>() == Approx(25).epsilon(1e-6));
+        CHECK(on_nodes["theta_best"].get<double>() == Approx(0.45).margin(0.002));
+        CHECK(on_nodes["theta_best_se"].get<double>() < 0.002);
+        const Raster elevation = read_dem(temp / (name + "/elevation.tif"), {}, {}).raster;
+        MeasureOptions options;
+        options.edge_basins = terrain::EdgeBasins::keep;
+        const ChiStatistics on_raster = measure_raster(elevation, options).statistics.chi;
+        INFO(name << " ksn " << on_raster.ksn_median << " theta " << on_raster.theta_best.value);
+        const bool same_cells = mesh == MeshKind::raster;
+        CHECK(on_raster.ksn_median == Approx(25).epsilon(same_cells ? 0.02 : 0.15));
+        CHECK(on_raster.theta_best.value == Approx(0.45).margin(same_cells ? 0.01 : 0.05));
+    }
+}
+
 TEST_CASE("The elevations of a raster run, measured like any DEM, give m within 0.02 and k within a tenth") {
     const TempFolder temp;
     for (const double n : {1.0, 1.5}) {

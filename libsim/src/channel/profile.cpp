@@ -111,6 +111,18 @@ Estimate with_bootstrap(double value, const std::vector<std::vector<double>>& ta
     return {value, standard_deviation(values), {quantile(values, 0.025), quantile(values, 0.975)}};
 }
 
+/// The first place downstream that lies lower; on a level reach not each of its nodes is looked at again and again.
+/// (Where water climbs, "lower" is lower than some node of the climb; no place in between can be the sought one.)
+std::vector<Index> next_lower(const Profile& profile) {
+    std::vector<Index> lower(profile.size(), none);
+    for (Index i = 0; i < profile.size(); ++i) {
+        const Index below = profile.below[i];
+        const bool falls = below != none && profile.elevation_m[below] < profile.elevation_m[i];
+        lower[i] = falls || below == none ? below : lower[below];
+    }
+    return lower;
+}
+
 }  // namespace
 
 Profile channel_profile(const terrain::FlowGraph& graph, std::span<const std::uint8_t> channel,
@@ -147,10 +159,11 @@ std::vector<double> steepness(const Profile& profile, std::span<const double> ch
                               double reference_area_m2, double smallest_drop_m) {
     const double scale = std::pow(reference_area_m2, theta);
     const double enough = smallest_drop_m * (1 - 1e-9);  // a whole drop is not missed by rounding
+    const std::vector<Index> lower = next_lower(profile);
     std::vector<double> result(profile.size(), nan);
     for (Index i = 0; i < profile.size(); ++i) {
         Index at = profile.below[i];
-        while (at != none && profile.elevation_m[i] - profile.elevation_m[at] < enough) at = profile.below[at];
+        while (at != none && profile.elevation_m[i] - profile.elevation_m[at] < enough) at = lower[at];
         if (at == none) continue;
         result[i] = scale * (profile.elevation_m[i] - profile.elevation_m[at]) / (chi_m[i] - chi_m[at]);
     }

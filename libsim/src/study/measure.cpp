@@ -50,24 +50,28 @@ ChannelStatistics channel_statistics(const channel::StreamNetwork& network, doub
     return c;
 }
 
-NetworkStatistics network_statistics(const RoutedTerrain& terrain, const channel::StreamNetwork& network,
-                                     const std::vector<Index>& basin_of, double threshold_m2, double largest_basin_m2) {
-    std::vector<std::uint8_t> in_largest(basin_of.size());
-    for (std::size_t node = 0; node < basin_of.size(); ++node) in_largest[node] = basin_of[node] == 0;
+/// From the channel threshold to a tenth of the largest basin; what is larger knows the basin's own size.
+PowerLaw exceedance_in_largest_basin(const RoutedTerrain& terrain, const Statistics& s, double threshold_m2) {
+    std::vector<std::uint8_t> inside(s.basin_of.size());
+    for (std::size_t node = 0; node < inside.size(); ++node) inside[node] = s.basin_of[node] == 0;
+    const double largest_m2 = s.basins.empty() ? 0 : s.basins.front().basin.area_m2;
+    return channel::area_exceedance(terrain.drainage_area_m2, inside, threshold_m2, 0.1 * largest_m2);
+}
+
+NetworkStatistics network_statistics(const RoutedTerrain& terrain, const Statistics& s, double threshold_m2) {
     const auto longest = channel::longest_upstream_lengths(terrain.graph);
-    NetworkStatistics n{.tokunaga = channel::tokunaga(network),
-                        .hack = channel::hack_law(network, terrain.drainage_area_m2, longest),
-                        .links = channel::link_lengths(network),
-                        .flint = channel::flint_law(network),
-                        .junction_reach_m = channel::junction_reach(network),
+    NetworkStatistics n{.tokunaga = channel::tokunaga(s.network),
+                        .hack = channel::hack_law(s.network, terrain.drainage_area_m2, longest),
+                        .links = channel::link_lengths(s.network),
+                        .flint = channel::flint_law(s.network),
+                        .junction_reach_m = channel::junction_reach(s.network),
                         .junctions = {},
-                        .width = channel::width_function(network),
-                        .area_exceedance = channel::area_exceedance(terrain.drainage_area_m2, in_largest, threshold_m2,
-                                                                    0.1 * largest_basin_m2)};
+                        .width = channel::width_function(s.network),
+                        .area_exceedance = exceedance_in_largest_basin(terrain, s, threshold_m2)};
     const channel::OffsetOf unknown = [](Index, Index) {
         return Point{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
     };
-    n.junctions = channel::junction_angles(network, terrain.offset_m ? terrain.offset_m : unknown, n.junction_reach_m,
+    n.junctions = channel::junction_angles(s.network, terrain.offset_m ? terrain.offset_m : unknown, n.junction_reach_m,
                                            n.flint.exponent.value);
     return n;
 }
@@ -224,8 +228,7 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
                                            : std::numeric_limits<double>::quiet_NaN();
     s.strahler = channel::strahler_statistics(s.network);
     s.horton = channel::horton_ratios(s.strahler);
-    s.network_laws =
-        network_statistics(terrain, s.network, s.basin_of, threshold, basins.empty() ? 0 : basins.front().area_m2);
+    s.network_laws = network_statistics(terrain, s, threshold);
     s.slope_area = channel::fit_slope_area(channel::slope_area_bins(slopes));
     s.slope_area_points = std::move(slopes);
     return s;
