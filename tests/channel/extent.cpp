@@ -45,7 +45,7 @@ TEST_CASE("Areas drawn from a power law have its exponent of exceedance") {
         std::vector<double> area;
         constexpr int count = 100000;
         for (int i = 0; i < count; ++i) area.push_back(900 * std::pow((i + 0.5) / count, -1 / beta));
-        const PowerLaw law = area_exceedance(area, {}, 5000, 1e5);
+        const PowerLawFit law = area_exceedance(area, {}, 5000, 1e5);
         CHECK(law.exponent.value == Approx(-beta).epsilon(0.01));
         std::vector<std::uint8_t> used(area.size(), 1);
         area.insert(area.end(), 5000, 1e6);

@@ -60,7 +60,7 @@ TEST_CASE("Basins that obey Hack's law give back its coefficient and exponent") 
         area[node] = 1e4 * std::exp(8 * random.uniform());
         length[node] = 1.7 * std::pow(area[node], 0.57);
     }
-    const PowerLaw law = hack_law(network, area, length);
+    const PowerLawFit law = hack_law(network, area, length);
     CHECK(law.coefficient.value == Approx(1.7));
     CHECK(law.exponent.value == Approx(0.57));
     CHECK(law.r2 == Approx(1));
@@ -83,7 +83,7 @@ TEST_CASE("Hack's law takes each link where it has met no other river") {
 TEST_CASE("Links that fall by Flint's law give back p and q") {
     Random random(23, 0);
     const auto network = with_slopes(network_of(support::random_tree(3000, random)), 0.2, -0.6, random);
-    const PowerLaw law = flint_law(network);
+    const PowerLawFit law = flint_law(network);
     CHECK(law.coefficient.value == Approx(0.2).epsilon(1e-3));  // a class holds unlike magnitudes
     CHECK(law.exponent.value == Approx(-0.6).margin(2e-3));
     CHECK(law.r2 > 0.9999);
@@ -97,7 +97,7 @@ TEST_CASE("Flint's law is one of mean slopes: flat links and scatter do not bend
         drop *= std::exp(sd * random.normal());
         if (random.uniform() < 0.2) drop = 0;
     }
-    const PowerLaw law = flint_law(network);
+    const PowerLawFit law = flint_law(network);
     CHECK(law.exponent.value == Approx(-0.5).margin(0.02));
     CHECK(law.coefficient.value == Approx(0.8 * 0.2 * std::exp(sd * sd / 2)).epsilon(0.02));
 }

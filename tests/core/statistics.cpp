@@ -116,7 +116,7 @@ TEST_CASE("A power law is found again from its own points, and pairs that have n
     x.insert(x.end(), {0, 5, 7});
     y.insert(y.end(), {1, -1, NAN});
     weight.insert(weight.end(), {1e6, 1e6, 1e6});
-    for (const PowerLaw& law : {fit_power_law(x, y), fit_power_law(x, y, weight)}) {
+    for (const PowerLawFit& law : {fit_power_law(x, y), fit_power_law(x, y, weight)}) {
         CHECK(law.coefficient.value == Approx(3));
         CHECK(law.exponent.value == Approx(-0.6));
         CHECK(law.r2 == Approx(1));

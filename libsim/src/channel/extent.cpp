@@ -58,8 +58,8 @@ WidthFunction width_function(const StreamNetwork& network) {
     return result;
 }
 
-PowerLaw area_exceedance(std::span<const double> drainage_area_m2, std::span<const std::uint8_t> used,
-                         double smallest_m2, double largest_m2) {
+PowerLawFit area_exceedance(std::span<const double> drainage_area_m2, std::span<const std::uint8_t> used,
+                            double smallest_m2, double largest_m2) {
     constexpr int per_decade = 10;
     const double decades = std::log10(largest_m2 / smallest_m2);
     const int steps = decades > 0 ? static_cast<int>(per_decade * decades) + 1 : 0;

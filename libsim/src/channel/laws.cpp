@@ -27,8 +27,8 @@ std::vector<double> longest_upstream_lengths(const StreamNetwork& network) {
     return longest;
 }
 
-PowerLaw hack_law(const StreamNetwork& network, std::span<const double> drainage_area_m2,
-                  std::span<const double> longest_upstream_m) {
+PowerLawFit hack_law(const StreamNetwork& network, std::span<const double> drainage_area_m2,
+                     std::span<const double> longest_upstream_m) {
     std::vector<double> area, length;
     for (Index link = 0; link < network.size(); ++link) {
         const auto nodes = network.nodes_of(link);
@@ -39,7 +39,7 @@ PowerLaw hack_law(const StreamNetwork& network, std::span<const double> drainage
     return fit_power_law(area, length);
 }
 
-PowerLaw flint_law(const StreamNetwork& network) {
+PowerLawFit flint_law(const StreamNetwork& network) {
     struct Class {
         double links = 0, length = 0, drop = 0, log_magnitude = 0;
     };

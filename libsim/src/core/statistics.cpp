@@ -113,7 +113,7 @@ Estimate exponential(const Estimate& logarithm) {
             {std::exp(logarithm.interval95[0]), std::exp(logarithm.interval95[1])}};
 }
 
-PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y, std::span<const double> weights) {
+PowerLawFit fit_power_law(std::span<const double> x, std::span<const double> y, std::span<const double> weights) {
     std::vector<double> log_x, log_y, kept;
     for (std::size_t i = 0; i < x.size(); ++i) {
         if (!(x[i] > 0) || !(y[i] > 0)) continue;

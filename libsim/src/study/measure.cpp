@@ -51,7 +51,7 @@ ChannelStatistics channel_statistics(const channel::StreamNetwork& network, doub
 }
 
 /// From the channel threshold to a tenth of the largest basin; what is larger knows the basin's own size.
-PowerLaw exceedance_in_largest_basin(const RoutedTerrain& terrain, const Statistics& s, double threshold_m2) {
+PowerLawFit exceedance_in_largest_basin(const RoutedTerrain& terrain, const Statistics& s, double threshold_m2) {
     std::vector<std::uint8_t> inside(s.basin_of.size());
     for (std::size_t node = 0; node < inside.size(); ++node) inside[node] = s.basin_of[node] == 0;
     const double largest_m2 = s.basins.empty() ? 0 : s.basins.front().basin.area_m2;

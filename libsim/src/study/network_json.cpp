@@ -25,7 +25,7 @@ Json tokunaga_json(const channel::Tokunaga& t) {
     return json;
 }
 
-Json power_law_json(const PowerLaw& law, const char* coefficient, const char* exponent) {
+Json power_law_json(const PowerLawFit& law, const char* coefficient, const char* exponent) {
     Json json;
     add_estimate(json, coefficient, law.coefficient);
     add_estimate(json, exponent, law.exponent);
@@ -52,7 +52,7 @@ Json junctions_json(const channel::JunctionAngles& angles, double reach_m) {
 }
 
 /// As β of P(A ≥ a) ∝ a^(−β).
-Json exceedance_json(const PowerLaw& law) {
+Json exceedance_json(const PowerLawFit& law) {
     const auto& [exponent, error, ends] = law.exponent;
     Json json;
     add_estimate(json, "exponent", {-exponent, error, {-ends[1], -ends[0]}});

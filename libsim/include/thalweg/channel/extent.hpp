@@ -22,7 +22,7 @@ WidthFunction width_function(const StreamNetwork&);
 /// Law of the exceedance of drainage areas, P(A ≥ a) ∝ a^(−β), as a power law of exponent −β: the share, counted by
 /// nodes, that has at least a drainage area a, at ten values of a per decade from `smallest_m2` to `largest_m2`,
 /// by regression of the logarithms. Successive shares hold each other, so the stated errors are too small.
-PowerLaw area_exceedance(std::span<const double> drainage_area_m2, std::span<const std::uint8_t> used,
-                         double smallest_m2, double largest_m2);
+PowerLawFit area_exceedance(std::span<const double> drainage_area_m2, std::span<const std::uint8_t> used,
+                            double smallest_m2, double largest_m2);
 
 }  // namespace thalweg::channel

@@ -31,14 +31,14 @@ Line fit_line(std::span<const double> x, std::span<const double> y, std::span<co
 Estimate exponential(const Estimate& logarithm);
 
 /// Power law y = coefficient·x^exponent.
-struct PowerLaw {
+struct PowerLawFit {
     Estimate coefficient;
     Estimate exponent;
     double r2;  ///< weighted coefficient of determination of the logarithms
 };
 
 /// Fits ln y on ln x with fit_line; pairs in which either is not above zero are left out.
-PowerLaw fit_power_law(std::span<const double> x, std::span<const double> y, std::span<const double> weights = {});
+PowerLawFit fit_power_law(std::span<const double> x, std::span<const double> y, std::span<const double> weights = {});
 
 double mean(std::span<const double> values);
 

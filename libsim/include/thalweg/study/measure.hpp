@@ -67,13 +67,13 @@ struct ChannelStatistics {
 /// What is counted and fitted on the links of a network.
 struct NetworkStatistics {
     channel::Tokunaga tokunaga;
-    PowerLaw hack;  ///< main-stream length (m) of area (m²)
+    PowerLawFit hack;  ///< main-stream length (m) of area (m²)
     channel::LinkLengths links;
-    PowerLaw flint;  ///< slope of 2·magnitude − 1
+    PowerLawFit flint;  ///< slope of 2·magnitude − 1
     double junction_reach_m;
     channel::JunctionAngles junctions;
     channel::WidthFunction width;
-    PowerLaw area_exceedance;  ///< of the largest basin; the exponent is −β
+    PowerLawFit area_exceedance;  ///< of the largest basin; the exponent is −β
 };
 
 /// Long profiles of the channels in χ, at the asked concavity.
