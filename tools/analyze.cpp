@@ -13,13 +13,14 @@ const std::map<std::string, study::Conditioning> conditionings{
 struct Options {
     CommonOptions common;
     DemOptions dem;
-    std::string file;
+    std::string file, theta;
     std::string conditioning = "fill";
 };
 
 void run(const Options& options) {
     study::MeasureOptions measure = measure_options(options.dem);
     measure.conditioning = conditionings.at(options.conditioning);
+    if (!options.theta.empty()) measure.theta = parse_number("--theta", options.theta, Sign::positive);
     const io::ReadOptions read = read_options(options.dem);
     run_into_folder(options.common, "analyze", [&](const auto& folder, const study::Messages& m) {
         return study::analyze(study::read_dem(options.file, read, m), measure, folder, m);
@@ -37,6 +38,7 @@ void add_analyze(CLI::App& app) {
                      "what becomes of pits: fill, carve or none (slopes are measured on carved profiles always)")
         ->check(CLI::IsMember({"fill", "carve", "none"}))
         ->capture_default_str();
+    command->add_option("--theta", options->theta, "concavity for chi and ksn [default: 0.45]");
     add_dem_options(*command, options->dem);
     add_common_options(*command, options->common, "analysis");
     command->callback([options] { run(*options); });

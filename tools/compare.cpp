@@ -24,7 +24,7 @@ void run(const Options& options) {
 }  // namespace
 
 void add_compare(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("compare", "Compare two terrains: slope-area, hypsometry, Horton");
+    CLI::App* command = app.add_subcommand("compare", "Compare two terrains: slope-area, hypsometry, networks");
     auto options = std::make_shared<Options>();
     command->add_option("A", options->a, "a DEM, or the folder of an analyze or simulate run")->required();
     command->add_option("B", options->b, "the same")->required();

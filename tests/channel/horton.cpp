@@ -110,20 +110,7 @@ TEST_CASE("An order without slope is left out of the slope ratio only") {
 
 TEST_CASE("Peano's basin has an area ratio of four") {
     // Cells of equal area on every link: RA tends to 4 from order to order, here within what the mouth adds.
-    std::vector<Index> receiver{none, 0};
-    for (int generation = 1; generation < 8; ++generation) {
-        const Index count = static_cast<Index>(receiver.size());
-        for (Index node = 1; node < count; ++node) {
-            const Index middle = static_cast<Index>(receiver.size());
-            receiver.push_back(receiver[node]);
-            receiver.insert(receiver.end(), {middle, middle});
-            receiver[node] = middle;
-        }
-    }
-    const auto graph = support::graph_of(receiver);
-    const std::vector<double> area = support::upstream_counts(graph);
-    const auto network =
-        stream_network(graph, std::vector<std::uint8_t>(graph.size(), 1), area, std::vector<double>(graph.size(), 0));
+    const auto network = support::network_of(support::peano_tree(8));
     const auto orders = strahler_statistics(network);
     REQUIRE(orders.size() == 8);
     for (std::size_t i = 3; i + 1 < orders.size() - 1; ++i) {

@@ -238,19 +238,8 @@ TEST_CASE("Random trees of any branching have the orders that pruning gives and 
 }
 
 TEST_CASE("Peano's basin has (2·4^(Ω−ω) + 1)/3 streams of order ω") {
-    // Each link is replaced by two in a row with two tributaries where they join: four links for one.
     for (Index order = 1; order <= 7; ++order) {
-        std::vector<Index> receiver{none, 0};
-        for (Index generation = 1; generation < order; ++generation) {
-            const Index count = static_cast<Index>(receiver.size());
-            for (Index node = 1; node < count; ++node) {
-                const Index middle = static_cast<Index>(receiver.size());
-                receiver.push_back(receiver[node]);
-                receiver.insert(receiver.end(), {middle, middle});
-                receiver[node] = middle;
-            }
-        }
-        const StreamNetwork network = network_of(graph_of(receiver));
+        const StreamNetwork network = network_of(support::peano_tree(order));
         CHECK(network.strahler[0] == order);
         for (Index each = 1; each <= order; ++each) {
             const Index expected = (2 * static_cast<Index>(std::pow(4, order - each)) + 1) / 3;

@@ -105,3 +105,48 @@ TEST_CASE("The mean of nothing is NaN") {
     CHECK(mean(std::vector<double>{1, 2, 6}) == Approx(3));
     CHECK(std::isnan(mean({})));
 }
+
+TEST_CASE("A power law is found again from its own points, and pairs that have no logarithm are left out") {
+    std::vector<double> x, y, weight;
+    for (double at = 1; at < 100; at *= 1.7) {
+        x.push_back(at);
+        y.push_back(3 * std::pow(at, -0.6));
+        weight.push_back(at);
+    }
+    x.insert(x.end(), {0, 5, 7});
+    y.insert(y.end(), {1, -1, NAN});
+    weight.insert(weight.end(), {1e6, 1e6, 1e6});
+    for (const PowerLawFit& law : {fit_power_law(x, y), fit_power_law(x, y, weight)}) {
+        CHECK(law.coefficient.value == Approx(3));
+        CHECK(law.exponent.value == Approx(-0.6));
+        CHECK(law.r2 == Approx(1));
+    }
+}
+
+TEST_CASE("An estimate's exponential keeps the interval's ends and the error to first order") {
+    const Estimate e = exponential({std::log(5.0), 0.1, {std::log(4.0), std::log(6.0)}});
+    CHECK(e.value == Approx(5));
+    CHECK(e.standard_error == Approx(0.5));
+    CHECK(e.interval95[0] == Approx(4));
+    CHECK(e.interval95[1] == Approx(6));
+}
+
+TEST_CASE("Deviation and quantiles of a small sample are those worked out by hand") {
+    CHECK(standard_deviation(std::vector<double>{2, 4, 4, 6}) == Approx(std::sqrt(8 / 3.0)));
+    CHECK(std::isnan(standard_deviation(std::vector<double>{2})));
+    const std::vector<double> values{30, 10, 20, 50};
+    CHECK(quantile(values, 0) == 10);
+    CHECK(quantile(values, 1) == 50);
+    CHECK(quantile(values, 0.5) == 25);
+    CHECK(quantile(values, 0.25) == Approx(17.5));
+    CHECK(std::isnan(quantile({}, 0.5)));
+}
+
+TEST_CASE("The Kolmogorov distance of small samples is the one drawn by hand, also with ties") {
+    CHECK(kolmogorov_distance({1, 2, 3, 4}, {1, 2, 3, 4}) == 0);
+    CHECK(kolmogorov_distance({1, 2}, {3, 4}) == 1);
+    CHECK(kolmogorov_distance({1, 2, 3, 4}, {3, 4, 5, 6}) == Approx(0.5));
+    CHECK(kolmogorov_distance({2, 2, 2, 5}, {2, 7}) == Approx(0.5));
+    CHECK(kolmogorov_distance({4, 1, 3, 2}, {2.5}) == Approx(0.5));
+    CHECK(std::isnan(kolmogorov_distance({}, {1})));
+}

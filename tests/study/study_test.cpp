@@ -84,6 +84,26 @@ TEST_CASE("A steady landscape fitted on its nodes gives back k and m") {
     }
 }
 
+TEST_CASE("A steady landscape shows its concavity and steepness in chi, on its nodes and as a DEM") {
+    const TempFolder temp;
+    for (const MeshKind mesh : {MeshKind::tin, MeshKind::raster}) {
+        const Experiment e = island(mesh, 1, 0.45, 20000);
+        const std::string name = std::to_string(static_cast<int>(mesh));
+        const Json on_nodes = simulated(e, temp / name)["terrain"]["chi"];
+        CHECK(on_nodes["ksn_median"].get<double>() == Approx(25).epsilon(1e-6));
+        CHECK(on_nodes["theta_best"].get<double>() == Approx(0.45).margin(0.002));
+        CHECK(on_nodes["theta_best_se"].get<double>() < 0.002);
+        const Raster elevation = read_dem(temp / (name + "/elevation.tif"), {}, {}).raster;
+        MeasureOptions options;
+        options.edge_basins = terrain::EdgeBasins::keep;
+        const ChiStatistics on_raster = measure_raster(elevation, options).statistics.chi;
+        INFO(name << " ksn " << on_raster.ksn_median << " theta " << on_raster.theta_best.value);
+        const bool same_cells = mesh == MeshKind::raster;
+        CHECK(on_raster.ksn_median == Approx(25).epsilon(same_cells ? 0.02 : 0.15));
+        CHECK(on_raster.theta_best.value == Approx(0.45).margin(same_cells ? 0.01 : 0.05));
+    }
+}
+
 TEST_CASE("The elevations of a raster run, measured like any DEM, give m within 0.02 and k within a tenth") {
     const TempFolder temp;
     for (const double n : {1.0, 1.5}) {
@@ -117,7 +137,7 @@ TEST_CASE("A simulation's summary adds up and is the same for one thread and for
             CHECK(s["nodes"].get<double>() == Approx(4000).epsilon(0.02));
         }
         for (const char* file : {"elevation.tif", "drainage_area.tif", "network.gpkg", "slope_area_nodes.csv",
-                                 "slope_area.csv", "hypsometry.csv", "experiment.toml"}) {
+                                 "slope_area.csv", "hypsometry.csv", "chi.csv", "links.csv", "experiment.toml"}) {
             INFO(file);
             CHECK(bytes_of(temp / (name + "1/" + file)) == bytes_of(temp / (name + "2/" + file)));
         }
@@ -164,7 +184,7 @@ TEST_CASE("A study of the embedded DEM runs from measuring to comparing") {
     const Json fit = read("fit/fit.json");
     CHECK(synthetic["slope_area"]["theta"].get<double>() == Approx(fit["theta"].get<double>()).margin(0.01));
     const Json comparison = read("compare/comparison.json");
-    CHECK(comparison["aspects"].size() == 4);
+    CHECK(comparison["aspects"].size() == 11);
     CHECK(manifest["outputs"].size() > 20);
 }
 
@@ -181,7 +201,10 @@ TEST_CASE("Comparing is symmetrical, and a terrain does not differ from itself")
         return Json::parse(compare(temp / a, temp / b, options, temp / out, {}));
     };
     const Json ab = compared("a", "b", "ab"), ba = compared("b", "a", "ba"), aa = compared("a", "a", "aa");
-    for (std::size_t i = 0; i < 3; ++i) {
+    REQUIRE(ab["aspects"].size() == 10);
+    for (std::size_t i = 0; i < 11; ++i) {
+        INFO(ab["aspects"][i]["name"]);
+        REQUIRE(ab["aspects"][i]["distance"].is_number());
         CHECK(ab["aspects"][i]["distance"].get<double>() == Approx(ba["aspects"][i]["distance"].get<double>()));
         CHECK(ab["aspects"][i]["distance"].get<double>() > 0);
         CHECK(aa["aspects"][i]["distance"].get<double>() == 0);

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "thalweg/channel/network.hpp"
 #include "thalweg/core/random.hpp"
 #include "thalweg/terrain/graph.hpp"
 
@@ -48,6 +49,28 @@ inline terrain::FlowGraph random_tree(Index sources, Random& random) {
         receiver.push_back(junction);  // … and takes a new tip
     }
     return graph_of(std::move(receiver));
+}
+
+/// Peano's basin of the given order: each link is replaced by two in a row with two tributaries where they join, four
+/// links for one, order − 1 times.
+inline terrain::FlowGraph peano_tree(Index order) {
+    std::vector<Index> receiver{none, 0};
+    for (Index generation = 1; generation < order; ++generation) {
+        const Index count = static_cast<Index>(receiver.size());
+        for (Index node = 1; node < count; ++node) {
+            const Index middle = static_cast<Index>(receiver.size());
+            receiver.push_back(receiver[node]);
+            receiver.insert(receiver.end(), {middle, middle});
+            receiver[node] = middle;
+        }
+    }
+    return graph_of(std::move(receiver));
+}
+
+/// The links of a graph all of whose nodes are channels, each with 1 m² of its own, in a landscape without relief.
+inline channel::StreamNetwork network_of(const terrain::FlowGraph& graph) {
+    return channel::stream_network(graph, std::vector<std::uint8_t>(graph.size(), 1), upstream_counts(graph),
+                                   std::vector<double>(graph.size(), 0));
 }
 
 }  // namespace thalweg::support

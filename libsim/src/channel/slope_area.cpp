@@ -100,11 +100,8 @@ SlopeArea fit_slope_area(std::vector<SlopeAreaBin> bins, double smallest_se_dex)
     }
     const Line line = fit_line(log_area, log_slope, weight);
     const auto& [slope, slope_se, slope_interval] = line.slope;
-    const auto& [intercept, intercept_se, intercept_interval] = line.intercept;
     return {.theta = {-slope, slope_se, {-slope_interval[1], -slope_interval[0]}},
-            .ks = {std::exp(intercept),
-                   std::exp(intercept) * intercept_se,
-                   {std::exp(intercept_interval[0]), std::exp(intercept_interval[1])}},
+            .ks = exponential(line.intercept),
             .r2 = line.r2,
             .bins = std::move(bins)};
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/core/statistics.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -105,10 +106,62 @@ Line fit_line(std::span<const double> x, std::span<const double> y, std::span<co
             .reduced_chi2 = scale};
 }
 
+Estimate exponential(const Estimate& logarithm) {
+    const double value = std::exp(logarithm.value);
+    return {value,
+            value * logarithm.standard_error,
+            {std::exp(logarithm.interval95[0]), std::exp(logarithm.interval95[1])}};
+}
+
+PowerLawFit fit_power_law(std::span<const double> x, std::span<const double> y, std::span<const double> weights) {
+    std::vector<double> log_x, log_y, kept;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        if (!(x[i] > 0) || !(y[i] > 0)) continue;
+        log_x.push_back(std::log(x[i]));
+        log_y.push_back(std::log(y[i]));
+        if (!weights.empty()) kept.push_back(weights[i]);
+    }
+    const Line line = fit_line(log_x, log_y, kept);
+    return {.coefficient = exponential(line.intercept), .exponent = line.slope, .r2 = line.r2};
+}
+
 double mean(std::span<const double> values) {
     double sum = 0;
     for (const double value : values) sum += value;
     return sum / static_cast<double>(values.size());
+}
+
+double standard_deviation(std::span<const double> values) {
+    if (values.size() < 2) return nan;
+    const double center = mean(values);
+    double squares = 0;
+    for (const double value : values) squares += (value - center) * (value - center);
+    return std::sqrt(squares / static_cast<double>(values.size() - 1));
+}
+
+double quantile(std::vector<double> values, double share) {
+    if (values.empty()) return nan;
+    std::ranges::sort(values);
+    const double place = share * static_cast<double>(values.size() - 1);
+    const auto below = std::min(static_cast<std::size_t>(place), values.size() - 1);
+    const auto above = std::min(below + 1, values.size() - 1);
+    return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+double kolmogorov_distance(std::vector<double> a, std::vector<double> b) {
+    if (a.empty() || b.empty()) return nan;
+    std::ranges::sort(a);
+    std::ranges::sort(b);
+    double largest = 0;
+    for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+        const double value = std::min(a[i], b[j]);
+        while (i < a.size() && a[i] <= value) ++i;
+        while (j < b.size() && b[j] <= value) ++j;
+        const double gap = static_cast<double>(i) / static_cast<double>(a.size()) -
+                           static_cast<double>(j) / static_cast<double>(b.size());
+        largest = std::max(largest, std::abs(gap));
+    }
+    return largest;
 }
 
 double student_t95(double degrees_of_freedom) {

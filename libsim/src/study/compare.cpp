@@ -11,6 +11,8 @@
 #include "study/report_json.hpp"
 #include "study/results.hpp"
 #include "thalweg/core/error.hpp"
+#include "thalweg/core/statistics.hpp"
+#include "thalweg/io/table_file.hpp"
 #include "thalweg/study/output_folder.hpp"
 
 namespace thalweg::study {
@@ -24,12 +26,23 @@ struct Side {
     fs::path path;
     std::optional<NamedRaster> raster;  ///< still to be measured
     Json summary;
+    std::vector<double> link_length_m{}, link_area_m2{};  ///< empty where a folder does not hold them
 };
+
+Side analyzed_side(const fs::path& folder) {
+    Side side{folder, std::nullopt, read_json(folder / "summary.json")};
+    if (fs::is_regular_file(folder / "links.csv")) {
+        const Table links = io::read_csv(folder / "links.csv");
+        side.link_length_m = numbers_of(links, "length_m");
+        side.link_area_m2 = numbers_of(links, "area_m2");
+    }
+    return side;
+}
 
 Side load(const fs::path& path, const CompareOptions& options, const Messages& messages) {
     switch (kind_of(path)) {
         case ResultKind::analyzed:
-            return {path, std::nullopt, read_json(path / "summary.json")};
+            return analyzed_side(path);
         case ResultKind::simulated:
             return {path, read_dem(path / "elevation.tif", {}, {.progress = messages.progress}), nullptr};
         case ResultKind::file:
@@ -70,6 +83,8 @@ void measure_side(Side& side, MeasureOptions options, double threshold_m2) {
     std::vector<std::string> notes = side.raster->warnings;
     side.summary = terrain_json({}, m.statistics, positions(side.raster->raster), nullptr, notes);
     side.summary["notes"] = notes;
+    side.link_length_m = m.statistics.network.length_m;
+    side.link_area_m2 = m.statistics.network.area_m2;
 }
 
 /// A curve of a summary as two rows of numbers; pairs with a null are left out.
@@ -177,11 +192,96 @@ Json horton_aspect(const Json& a, const Json& b) {
                   "root mean square of ln(ratio of a / ratio of b) over RB, RL, RA, RS by regression");
 }
 
+/// The list at a place of a summary, NaN for null; empty where there is none.
+std::vector<double> list_at(const Json& json, const char* pointer) {
+    const Json::json_pointer where(pointer);
+    std::vector<double> values;
+    if (!json.contains(where)) return values;
+    for (const Json& value : json.at(where)) values.push_back(value.is_number() ? value.get<double>() : nan);
+    return values;
+}
+
+Json tokunaga_aspect(const Json& a, const Json& b) {
+    const auto in_a = list_at(a, "/tokunaga/T_k"), in_b = list_at(b, "/tokunaga/T_k");
+    double squares = 0;
+    int count = 0;
+    for (std::size_t k = 0; k < std::min(in_a.size(), in_b.size()); ++k) {
+        const double difference = std::log(in_a[k] / in_b[k]);
+        if (!std::isfinite(difference)) continue;
+        squares += difference * difference;
+        ++count;
+    }
+    return aspect("tokunaga", "c", at(a, "/tokunaga/c"), at(b, "/tokunaga/c"),
+                  count > 0 ? std::sqrt(squares / count) : nan,
+                  "root mean square of ln(T_k of a / T_k of b) over the k for which both are above 0");
+}
+
+Json link_lengths_aspect(const Side& a, const Side& b) {
+    const auto average = [](const std::vector<double>& lengths) { return lengths.empty() ? nan : mean(lengths); };
+    return aspect("link_lengths", "mean length of all links (m)", average(a.link_length_m), average(b.link_length_m),
+                  kolmogorov_distance(a.link_length_m, b.link_length_m),
+                  "largest difference between the shares of links up to any length (Kolmogorov-Smirnov)");
+}
+
+Json drainage_area_aspect(const Side& a, const Side& b) {
+    return aspect("drainage_area", "area exceedance exponent", at(a.summary, "/area_exceedance/exponent"),
+                  at(b.summary, "/area_exceedance/exponent"), kolmogorov_distance(a.link_area_m2, b.link_area_m2),
+                  "largest difference between the shares of links up to any drainage area (Kolmogorov-Smirnov)");
+}
+
+/// Shares of a river's length in the classes of distance.
+std::vector<double> width_shares(const Json& summary) {
+    std::vector<double> links = list_at(summary, "/width_function/links");
+    double sum = 0;
+    for (const double each : links) sum += each;
+    for (double& each : links) each /= sum;
+    return links;
+}
+
+Json width_function_aspect(const Json& a, const Json& b) {
+    const auto in_a = width_shares(a), in_b = width_shares(b);
+    const auto middle = [](const std::vector<double>& shares) {
+        double sum = 0;
+        for (std::size_t i = 0; i < shares.size(); ++i) sum += shares[i] * (static_cast<double>(i) + 0.5);
+        return shares.empty() ? nan : sum / static_cast<double>(shares.size());
+    };
+    double difference = in_a.empty() || in_a.size() != in_b.size() ? nan : 0;
+    for (std::size_t i = 0; i < std::min(in_a.size(), in_b.size()); ++i) difference += std::abs(in_a[i] - in_b[i]) / 2;
+    return aspect("width_function", "mean distance of the channels from the mouth over the greatest", middle(in_a),
+                  middle(in_b), difference,
+                  "half the area between the width functions over distance relative to the farthest source, each of "
+                  "area one");
+}
+
+/// An aspect that is one number, and its distance the difference.
+Json number_aspect(const char* name, const char* quantity, const char* pointer, const Json& a, const Json& b) {
+    return aspect(name, quantity, at(a, pointer), at(b, pointer), std::abs(at(a, pointer) - at(b, pointer)),
+                  "absolute difference");
+}
+
+Json all_aspects(const Side& a, const Side& b) {
+    const Json &in_a = a.summary, &in_b = b.summary;
+    return {slope_area_aspect(in_a, in_b),
+            hypsometry_aspect(in_a, in_b),
+            relief_aspect(in_a, in_b),
+            horton_aspect(in_a, in_b),
+            tokunaga_aspect(in_a, in_b),
+            link_lengths_aspect(a, b),
+            drainage_area_aspect(a, b),
+            width_function_aspect(in_a, in_b),
+            number_aspect("junction_angles", "mean angle (deg)", "/junctions/mean_angle_deg", in_a, in_b),
+            number_aspect("flint", "q", "/flint/q", in_a, in_b),
+            number_aspect("hack", "exponent", "/hack/exponent", in_a, in_b)};
+}
+
 /// What of a side the figures need: its name, and the measures compared.
 Json side_json(const Side& side) {
     Json json{{"name", side.path.filename().string()}};
     for (const char* key : {"input", "hypsometry", "channels", "strahler", "horton", "slope_area"}) {
         json[key] = side.summary.at(key);
+    }
+    for (const char* key : {"tokunaga", "hack", "links", "flint", "junctions", "area_exceedance", "width_function"}) {
+        json[key] = side.summary.value(key, Json());
     }
     return json;
 }
@@ -195,6 +295,10 @@ std::vector<std::string> notes_of(const Side& a, const Side& b, const Json& aspe
                                     aspect.at("name").get<std::string>()));
     }
     for (const Side* side : {&a, &b}) {
+        if (side->link_length_m.empty()) {
+            notes.push_back(fmt::format("link_lengths, drainage_area: '{}' holds no links, or no links.csv",
+                                        side->path.filename().string()));
+        }
         for (const Json& note : side->summary.value("notes", Json::array())) {
             notes.push_back(fmt::format("{}: {}", side->path.filename().string(), note.get<std::string>()));
         }
@@ -217,8 +321,7 @@ std::string compare(const fs::path& a_path, const fs::path& b_path, const Compar
     measure_side(a, options.measure, threshold);
     measure_side(b, options.measure, threshold);
     try {
-        const Json aspects{slope_area_aspect(a.summary, b.summary), hypsometry_aspect(a.summary, b.summary),
-                           horton_aspect(a.summary, b.summary), relief_aspect(a.summary, b.summary)};
+        const Json aspects = all_aspects(a, b);
         const Json comparison{{"a", side_json(a)},
                               {"b", side_json(b)},
                               {"channel_threshold_area_m2", threshold},

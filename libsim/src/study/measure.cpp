@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -62,6 +63,32 @@ ChannelStatistics channel_statistics(const Statistics& s, double threshold_m2, d
     return c;
 }
 
+/// From the channel threshold to a tenth of the largest basin; what is larger knows the basin's own size.
+PowerLawFit exceedance_in_largest_basin(const RoutedTerrain& terrain, const Statistics& s, double threshold_m2) {
+    std::vector<std::uint8_t> inside(s.basin_of.size());
+    for (std::size_t node = 0; node < inside.size(); ++node) inside[node] = s.basin_of[node] == 0;
+    const double largest_m2 = s.basins.empty() ? 0 : s.basins.front().basin.area_m2;
+    return channel::area_exceedance(terrain.drainage_area_m2, inside, threshold_m2, 0.1 * largest_m2);
+}
+
+NetworkStatistics network_statistics(const RoutedTerrain& terrain, const Statistics& s, double threshold_m2) {
+    const auto longest = channel::longest_upstream_lengths(terrain.graph);
+    NetworkStatistics n{.tokunaga = channel::tokunaga(s.network),
+                        .hack = channel::hack_law(s.network, terrain.drainage_area_m2, longest),
+                        .links = channel::link_lengths(s.network),
+                        .flint = channel::flint_law(s.network),
+                        .junction_reach_m = channel::junction_reach(s.network),
+                        .junctions = {},
+                        .width = channel::width_function(s.network),
+                        .area_exceedance = exceedance_in_largest_basin(terrain, s, threshold_m2)};
+    const channel::OffsetOf unknown = [](Index, Index) {
+        return Point{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+    };
+    n.junctions = channel::junction_angles(s.network, terrain.offset_m ? terrain.offset_m : unknown, n.junction_reach_m,
+                                           n.flint.exponent.value);
+    return n;
+}
+
 /// Relief, hypsometric integral and order of every basin in one pass over the nodes.
 std::vector<BasinStatistics> basin_statistics(const RoutedTerrain& terrain, std::span<const double> ground_m,
                                               const std::vector<terrain::Basin>& basins, const Statistics& s) {
@@ -105,6 +132,12 @@ double reference_relief(const RasterMeasurement& m, std::span<const double> grou
     return highest - lowest;
 }
 
+/// What may enter statistics: complete catchments, or (empty) everything.
+std::span<const std::uint8_t> nodes_in_use(const RoutedTerrain& terrain, const MeasureOptions& options) {
+    if (options.edge_basins == terrain::EdgeBasins::keep) return {};
+    return terrain.complete;
+}
+
 /// The terrain along which slopes are measured: never filled, cut through where pits were.
 RoutedTerrain carved_terrain(const Raster& raster, const std::vector<Boundary>& boundary, ConditioningReport& report) {
     const Grid& grid = raster.grid;
@@ -146,10 +179,8 @@ std::vector<channel::SlopeAreaPoint> segments(const RoutedTerrain& carved, Raste
     m.vertical_quantum_m = channel::vertical_quantum(ground_m);
     m.segment_drop_m = std::max(0.025 * relief, 3 * m.vertical_quantum_m);
     if (!(m.segment_drop_m > 0)) return {};
-    const bool keep = options.edge_basins == terrain::EdgeBasins::keep;
     return channel::fixed_drop_segments(
-        carved.graph, carved.drainage_area_m2, carved.elevation_m,
-        keep ? std::span<const std::uint8_t>{} : carved.complete,
+        carved.graph, carved.drainage_area_m2, carved.elevation_m, nodes_in_use(carved, options),
         {.drop_m = m.segment_drop_m, .smallest_drop_m = 3 * m.vertical_quantum_m, .smallest_area_m2 = threshold_m2});
 }
 
@@ -183,8 +214,7 @@ double default_channel_area(double area_m2) {
 Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_m, const MeasureOptions& options,
                    std::vector<channel::SlopeAreaPoint> slopes) {
     const double threshold = options.channel_area_m2.value_or(default_channel_area(total_area(terrain)));
-    const bool keep = options.edge_basins == terrain::EdgeBasins::keep;
-    const std::span<const std::uint8_t> used = keep ? std::span<const std::uint8_t>{} : terrain.complete;
+    const std::span<const std::uint8_t> used = nodes_in_use(terrain, options);
 
     Statistics s;
     s.hypsometry = terrain::hypsometry(ground_m, terrain.cell_area_m2);
@@ -208,9 +238,31 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
                                            : std::numeric_limits<double>::quiet_NaN();
     s.strahler = channel::strahler_statistics(s.network);
     s.horton = channel::horton_ratios(s.strahler);
+    s.network_laws = network_statistics(terrain, s, threshold);
     s.slope_area = channel::fit_slope_area(channel::slope_area_bins(slopes));
     s.slope_area_points = std::move(slopes);
     return s;
+}
+
+ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions& options, double threshold_m2,
+                          double drop_m) {
+    const auto channels =
+        channel::channels_by_area(carved.drainage_area_m2, threshold_m2, nodes_in_use(carved, options));
+    ChiStatistics c{.theta = options.theta,
+                    .reference_area_m2 = 1e6,
+                    .profile = {},
+                    .chi_m = {},
+                    .ksn = {},
+                    .ksn_median = 0,
+                    .theta_best = {}};
+    c.profile = channel::channel_profile(carved.graph, channels, carved.drainage_area_m2, carved.elevation_m);
+    c.chi_m = channel::chi(c.profile, c.theta, c.reference_area_m2);
+    c.ksn = channel::steepness(c.profile, c.chi_m, c.theta, c.reference_area_m2, drop_m);
+    std::vector<double> known;
+    std::ranges::copy_if(c.ksn, std::back_inserter(known), [](double value) { return !std::isnan(value); });
+    c.ksn_median = quantile(std::move(known), 0.5);
+    c.theta_best = channel::concavity_by_chi(c.profile);
+    return c;
 }
 
 RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& options) {
@@ -227,6 +279,7 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
     m.terrain.complete = terrain::complete_catchments(raster.grid, m.terrain.graph, boundary);
     if (options.conditioning == Conditioning::carve) surface = terrain::carve(m.terrain.graph, surface);
     report_changes(raster, surface, m.conditioning);
+    m.terrain.offset_m = channel::offsets(raster.grid);
     m.terrain.elevation_m = std::move(surface);
 
     m.valid_cells = static_cast<Index>(m.terrain.graph.order.size());
@@ -235,6 +288,7 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
     if (!resolved.channel_area_m2) resolved.channel_area_m2 = default_channel_area(m.area_m2);
     auto slopes = segments(carved, m, resolved, *resolved.channel_area_m2, raster.values);
     m.statistics = measure(m.terrain, raster.values, resolved, std::move(slopes));
+    m.statistics.chi = measure_chi(carved, resolved, *resolved.channel_area_m2, m.segment_drop_m);
     return m;
 }
 

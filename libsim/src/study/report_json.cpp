@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "thalweg/core/error.hpp"
 #include "thalweg/study/output_folder.hpp"
 
@@ -154,18 +156,28 @@ Json interval(const Estimate& estimate) {
 Json terrain_json(const TerrainInput& input, const Statistics& s, const PositionOf& position, Json conditioning,
                   std::vector<std::string>& notes) {
     explain_nulls(s, notes);
-    return {{"input", input_json(input, s.hypsometry)},
-            {"conditioning", std::move(conditioning)},
-            {"hypsometry", hypsometry_json(s.hypsometry)},
-            {"channels", channels_json(s.channels)},
-            {"strahler", strahler_json(s.strahler)},
-            {"horton",
-             {{"RB", ratio_json(s.horton.bifurcation)},
-              {"RL", ratio_json(s.horton.length)},
-              {"RA", ratio_json(s.horton.area)},
-              {"RS", ratio_json(s.horton.slope)}}},
-            {"slope_area", slope_area_json(s.slope_area)},
-            {"basins", basins_json(s, position)}};
+    Json summary{{"input", input_json(input, s.hypsometry)},
+                 {"conditioning", std::move(conditioning)},
+                 {"hypsometry", hypsometry_json(s.hypsometry)},
+                 {"channels", channels_json(s.channels)},
+                 {"strahler", strahler_json(s.strahler)},
+                 {"horton",
+                  {{"RB", ratio_json(s.horton.bifurcation)},
+                   {"RL", ratio_json(s.horton.length)},
+                   {"RA", ratio_json(s.horton.area)},
+                   {"RS", ratio_json(s.horton.slope)}}}};
+    summary.update(network_json(s.network_laws, notes));
+    summary["slope_area"] = slope_area_json(s.slope_area);
+    summary["chi"] = chi_json(s.chi, notes);
+    summary["basins"] = basins_json(s, position);
+    return summary;
+}
+
+void explain_null(const char* key, const Json& json, const char* reason, std::vector<std::string>& notes) {
+    const Json values = json.flatten();  // named, because items() refers to it
+    if (std::ranges::any_of(values, [](const Json& value) { return value.is_null(); })) {
+        notes.push_back(fmt::format("{}: {}", key, reason));
+    }
 }
 
 std::string text_of(const Json& json) { return json.dump(2) + "\n"; }

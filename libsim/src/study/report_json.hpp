@@ -38,6 +38,14 @@ struct TerrainInput {
 Json terrain_json(const TerrainInput&, const Statistics&, const PositionOf&, Json conditioning,
                   std::vector<std::string>& notes);
 
+/// The keys `tokunaga`, `hack`, `links`, `flint`, `junctions`, `area_exceedance` and `width_function`.
+Json network_json(const NetworkStatistics&, std::vector<std::string>& notes);
+
+Json chi_json(const ChiStatistics&, std::vector<std::string>& notes);
+
+/// Adds "key: reason" to the notes if anything in the JSON is null (or an empty list).
+void explain_null(const char* key, const Json&, const char* reason, std::vector<std::string>& notes);
+
 /// The text of a file: two spaces of indentation and a final newline.
 std::string text_of(const Json&);
 

@@ -110,12 +110,14 @@ Finished finish(const Topology& topology, const evolve::River& river, const Doma
     f.terrain.cell_area_m2 = terrain::cell_areas(topology);
     f.terrain.drainage_area_m2 = drainage.area_m2;
     f.terrain.complete.assign(topology.size(), 1);
+    f.terrain.offset_m = channel::offsets(topology);
     std::vector<std::uint8_t> free(f.talus_limited);
     for (std::uint8_t& flag : free) flag = !flag;
     f.river_slopes = channel::node_slopes(f.terrain.graph, f.terrain.drainage_area_m2, f.terrain.elevation_m, free);
     MeasureOptions options;
     options.channel_area_m2 = e.study.channel_area_m2;
     f.statistics = measure(f.terrain, f.terrain.elevation_m, options, f.river_slopes);
+    f.statistics.chi = measure_chi(f.terrain, options, f.statistics.channels.threshold_area_m2, 0);
     return f;
 }
 
@@ -230,6 +232,8 @@ void write_results(const Heightfield& h, const Finished& f, const Outcome& o, co
     io::write_csv(folder / "slope_area_nodes.csv", node_table(f));
     io::write_csv(folder / "slope_area.csv", slope_area_table(s.slope_area.bins));
     io::write_csv(folder / "hypsometry.csv", hypsometry_table(s.hypsometry));
+    io::write_csv(folder / "chi.csv", chi_table(s, position));
+    io::write_csv(folder / "links.csv", link_values(s.network));
     io::write_csv(folder / "history.csv", history_table(o.history));
 }
 

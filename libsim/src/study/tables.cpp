@@ -45,22 +45,36 @@ PositionOf positions(const Raster& raster) {
     };
 }
 
-Table links_table(const channel::StreamNetwork& network, const PositionOf& position) {
+Table link_values(const channel::StreamNetwork& network) {
     Wholes id, downstream, strahler, shreve;
     Doubles slope;
-    Table table{.name = "links", .columns = {}, .kind = GeometryKind::line, .geometry = {}};
     for (Index link = 0; link < network.size(); ++link) {
         id.push_back(link);
         downstream.push_back(or_minus_one(network.downstream[link]));
         strahler.push_back(network.strahler[link]);
         shreve.push_back(network.shreve[link]);
         slope.push_back(network.drop_m[link] / network.length_m[link]);
+    }
+    return {.name = "links",
+            .columns = {{"id", id},
+                        {"downstream", downstream},
+                        {"strahler", strahler},
+                        {"shreve", shreve},
+                        {"length_m", network.length_m},
+                        {"drop_m", network.drop_m},
+                        {"slope", slope},
+                        {"area_m2", network.area_m2}},
+            .kind = GeometryKind::no_geometry,
+            .geometry = {}};
+}
+
+Table links_table(const channel::StreamNetwork& network, const PositionOf& position) {
+    Table table = link_values(network);
+    table.kind = GeometryKind::line;
+    for (Index link = 0; link < network.size(); ++link) {
         std::vector<Point>& line = table.geometry.emplace_back();
         for (const Index node : network.nodes_of(link)) line.push_back(position(node));
     }
-    table.columns = {{"id", id},         {"downstream", downstream},     {"strahler", strahler},
-                     {"shreve", shreve}, {"length_m", network.length_m}, {"drop_m", network.drop_m},
-                     {"slope", slope},   {"area_m2", network.area_m2}};
     return table;
 }
 
@@ -112,6 +126,29 @@ Table slope_area_table(const std::vector<channel::SlopeAreaBin>& bins) {
                         {"slope", column_of(bins, [](const auto& bin) { return bin.slope; })},
                         {"slope_se", column_of(bins, [](const auto& bin) { return bin.slope_se; })},
                         {"count", column_of(bins, [](const auto& bin) { return std::int64_t{bin.count}; })}},
+            .kind = GeometryKind::no_geometry,
+            .geometry = {}};
+}
+
+Table chi_table(const Statistics& s, const PositionOf& position) {
+    const channel::Profile& profile = s.chi.profile;
+    Wholes basin;
+    Doubles x, y;
+    for (Index i = 0; i < profile.size(); ++i) {
+        const Index below = profile.below[i];
+        basin.push_back(below == none ? or_minus_one(s.basin_of[profile.node[i]]) : basin[below]);
+        const Point at = position(profile.node[i]);
+        x.push_back(at.x);
+        y.push_back(at.y);
+    }
+    return {.name = "chi",
+            .columns = {{"chi_m", s.chi.chi_m},
+                        {"elevation_m", profile.elevation_m},
+                        {"area_m2", profile.area_m2},
+                        {"basin", basin},
+                        {"ksn", s.chi.ksn},
+                        {"x", x},
+                        {"y", y}},
             .kind = GeometryKind::no_geometry,
             .geometry = {}};
 }

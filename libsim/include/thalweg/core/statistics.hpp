@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 namespace thalweg {
 
@@ -26,7 +27,31 @@ struct Line {
 /// no spread in x, what cannot be known is NaN.
 Line fit_line(std::span<const double> x, std::span<const double> y, std::span<const double> weights = {});
 
+/// What e^x is where x is only estimated: the error to first order, the interval's ends carried over.
+Estimate exponential(const Estimate& logarithm);
+
+/// Power law y = coefficient·x^exponent.
+struct PowerLawFit {
+    Estimate coefficient;
+    Estimate exponent;
+    double r2;  ///< weighted coefficient of determination of the logarithms
+};
+
+/// Fits ln y on ln x with fit_line; pairs in which either is not above zero are left out.
+PowerLawFit fit_power_law(std::span<const double> x, std::span<const double> y, std::span<const double> weights = {});
+
 double mean(std::span<const double> values);
+
+/// Standard deviation of a sample, with n − 1; NaN for fewer than two values.
+double standard_deviation(std::span<const double> values);
+
+/// The value under which the given share of a sample lies, interpolated linearly between its members in order (0: the
+/// smallest, 0.5: the median, 1: the largest); NaN for no values.
+double quantile(std::vector<double> values, double share);
+
+/// Largest difference between the shares of two samples that lie at or below any value (Kolmogorov–Smirnov), 0 to 1;
+/// NaN where a sample is empty.
+double kolmogorov_distance(std::vector<double> a, std::vector<double> b);
 
 /// Two-sided 95 % quantile of Student's t with the given degrees of freedom (≥ 1).
 double student_t95(double degrees_of_freedom);

@@ -5,9 +5,14 @@
 #include <span>
 #include <vector>
 
+#include "thalweg/channel/extent.hpp"
 #include "thalweg/channel/horton.hpp"
+#include "thalweg/channel/laws.hpp"
+#include "thalweg/channel/links.hpp"
 #include "thalweg/channel/network.hpp"
+#include "thalweg/channel/profile.hpp"
 #include "thalweg/channel/slope_area.hpp"
+#include "thalweg/channel/tokunaga.hpp"
 #include "thalweg/core/raster.hpp"
 #include "thalweg/terrain/basins.hpp"
 #include "thalweg/terrain/hypsometry.hpp"
@@ -27,6 +32,7 @@ struct MeasureOptions {
     terrain::EdgeBasins edge_basins = terrain::EdgeBasins::drop;
     std::optional<Index> catchment_outlet{};  ///< the raster is one catchment that leaves here: its
                                               ///< rim is a divide, not a cut
+    double theta = 0.45;                      ///< concavity for chi and ksn
 };
 
 /// A terrain once it is routed: a DEM, a simulated mesh and a grown network look the same from here on.
@@ -36,6 +42,7 @@ struct RoutedTerrain {
     std::vector<double> cell_area_m2;
     std::vector<double> drainage_area_m2;
     std::vector<std::uint8_t> complete;  ///< 1 where the whole upslope area is known
+    channel::OffsetOf offset_m;          ///< from node to node; empty: angles are not known
 };
 
 struct BasinStatistics {
@@ -57,14 +64,37 @@ struct ChannelStatistics {
     Index max_strahler, max_shreve;
 };
 
+/// What is counted and fitted on the links of a network.
+struct NetworkStatistics {
+    channel::Tokunaga tokunaga;
+    PowerLawFit hack;  ///< main-stream length (m) of area (m²)
+    channel::LinkLengths links;
+    PowerLawFit flint;  ///< slope of 2·magnitude − 1
+    double junction_reach_m;
+    channel::JunctionAngles junctions;
+    channel::WidthFunction width;
+    PowerLawFit area_exceedance;  ///< of the largest basin; the exponent is −β
+};
+
+/// Long profiles of the channels in χ, at the asked concavity.
+struct ChiStatistics {
+    double theta, reference_area_m2;
+    channel::Profile profile;
+    std::vector<double> chi_m, ksn;  ///< per node of the profile; NaN where ksn is not known
+    double ksn_median;
+    Estimate theta_best;
+};
+
 /// Every statistic of one terrain.
 struct Statistics {
     terrain::Hypsometry hypsometry;
     ChannelStatistics channels;
     std::vector<channel::OrderStatistics> strahler;
     channel::HortonRatios horton;
+    NetworkStatistics network_laws;
     channel::SlopeArea slope_area;
     std::vector<channel::SlopeAreaPoint> slope_area_points;
+    ChiStatistics chi;
     std::vector<BasinStatistics> basins;
     channel::StreamNetwork network;
     std::vector<Index> strahler_of;  ///< order of each channel node, 0 elsewhere
@@ -77,6 +107,10 @@ struct Statistics {
 /// any conditioning, of which the hypsometry and the relief are taken.
 Statistics measure(const RoutedTerrain&, std::span<const double> ground_m, const MeasureOptions&,
                    std::vector<channel::SlopeAreaPoint> slopes);
+
+/// Long profiles on the terrain along which slopes are measured (carved, on a raster): ksn over falls of at least
+/// `drop_m`, channels from `threshold_m2`.
+ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions&, double threshold_m2, double drop_m);
 
 /// How a DEM was made to drain.
 struct ConditioningReport {

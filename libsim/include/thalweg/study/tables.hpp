@@ -22,6 +22,12 @@ Table junctions_table(const Statistics&, const PositionOf&);
 /// Layer `basins`: one polygon per basin of the statistics; `outlines[i]` belongs to basin i.
 Table basins_table(const Statistics&, const PositionOf&, std::vector<Polygon> outlines);
 
+/// links.csv: the layer's columns without its lines.
+Table link_values(const channel::StreamNetwork&);
+
+/// chi.csv: one row per channel node; `basin` is the number of the basin its river leaves by, −1 outside of all.
+Table chi_table(const Statistics&, const PositionOf&);
+
 /// hypsometry.csv, slope_area.csv (the bins) and slope_area_points.csv.
 Table hypsometry_table(const terrain::Hypsometry&);
 Table slope_area_table(const std::vector<channel::SlopeAreaBin>&);
