@@ -14,6 +14,8 @@ import types
 import unittest
 from html.parser import HTMLParser
 
+import numpy as np
+from matplotlib.figure import Figure
 from osgeo import osr
 
 sys.dont_write_bytecode = True
@@ -87,6 +89,7 @@ class Figures(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         """One study, drawn once as the thalweg program has it drawn: the tests read it, or change a copy of it."""
+        style.prepare()
         cls.temporary = tempfile.TemporaryDirectory()
         cls.study = os.path.join(cls.temporary.name, "drawn")
         mock_study.write_study(cls.study)
@@ -197,6 +200,25 @@ class Figures(unittest.TestCase):
         line, why = sides.theory(folder, side)
         self.assertIsNone(line)
         self.assertIn("uplift (radial)", why)
+
+    def test_the_area_of_a_dot_follows_its_length(self):
+        side = curves.Side("one", style.LOOK["real"], cloud=([1e6, 2e6, 0], [0.1, 0.01, 0.1], np.array([10.0, 100.0, 1e9])))
+        axes = Figure().add_subplot()
+        curves.draw_slope_area(axes, side)
+        small, large = axes.collections[0].get_sizes()
+        self.assertAlmostEqual(large / small, 10)
+
+    def test_horton_plots_have_whole_orders_and_say_where_there_are_two(self):
+        side = curves.Side("Twin_a", style.LOOK["real"], {"strahler": [
+            {"order": order, "streams": 12 // order**3, "mean_length_m": 1e3 * order} for order in (1, 2)]})
+        axes = Figure().add_subplot()
+        curves.draw_horton(axes, [side], "streams", "Streams", "RB", "$R_B$")
+        self.assertEqual((list(axes.xaxis.get_majorticklocs()), len(axes.xaxis.get_minorticklocs())), ([1, 2], 0))
+        self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()], ["Twin_a (two orders only)"])
+
+    def test_a_comparison_leaves_names_as_they_are(self):
+        titles = next(thalweg_figures.figures_of_compare(os.path.join(self.study, "compare")))[1].axes
+        self.assertEqual([axes.get_title(loc="left") for axes in titles], ["hills.tif", "simulate"])
 
     def test_summaries_without_any_number_survive(self):
         folder = self.changeable()
