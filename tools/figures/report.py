@@ -319,7 +319,7 @@ def _sides_named(definition):
 
 
 ASPECTS = {"slope_area": "Slope–area", "horton": "Horton’s ratios"}
-QUANTITIES = {"theta": "θ, regression", "RB": "<i>R</i><sub>B</sub>"}
+QUANTITIES = {"theta": "θ, regression", "relief_m": "m", "RB": "<i>R</i><sub>B</sub>"}
 
 
 def _aspect_cell(study, aspect, key, footnotes):
