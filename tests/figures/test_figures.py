@@ -3,6 +3,7 @@
 import base64
 import contextlib
 import io
+import itertools
 import json
 import os
 import shutil
@@ -129,10 +130,9 @@ class Figures(unittest.TestCase):
             self.assertEqual(sorted(os.listdir(figures)), sorted(f"{name}.png" for name in names))
             for name in names:
                 self.assert_is_small_picture(contents(os.path.join(figures, name + ".png")))
-        files = [os.path.join(self.study, "basin", "figures", name + ".png") for name in EXPECTED["analyze"][1]]
-        first = [contents(file) for file in files]
-        self.succeed("analyze", os.path.join(self.study, "basin"))
-        self.assertTrue(first == [contents(file) for file in files])
+        for name, figure in itertools.islice(thalweg_figures.figures_of_analyze(os.path.join(self.study, "basin")), 2):
+            first = contents(os.path.join(self.study, "basin", "figures", name + ".png"))
+            self.assertTrue(first == style.png(figure, palette=name == "map"), name)
         curve = style.svg(curves.hypsometry(study.Study(self.study).sides()))
         self.assert_says(self.page(), base64.b64encode(curve).decode())
 
