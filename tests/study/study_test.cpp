@@ -201,7 +201,7 @@ TEST_CASE("Comparing is symmetrical, and a terrain does not differ from itself")
         return Json::parse(compare(temp / a, temp / b, options, temp / out, {}));
     };
     const Json ab = compared("a", "b", "ab"), ba = compared("b", "a", "ba"), aa = compared("a", "a", "aa");
-    REQUIRE(ab["aspects"].size() == 10);
+    REQUIRE(ab["aspects"].size() == 11);
     for (std::size_t i = 0; i < 11; ++i) {
         INFO(ab["aspects"][i]["name"]);
         REQUIRE(ab["aspects"][i]["distance"].is_number());

@@ -115,7 +115,7 @@ Json manifest_json(const Experiment& e, const NamedRaster& dem, const fs::path& 
 
 void draw_all(const fs::path& folder, const Messages& messages) {
     messages.progress("drawing");
-    draw_figures("report", folder);
+    draw_figures("study", folder);
 }
 
 }  // namespace
