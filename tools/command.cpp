@@ -56,6 +56,20 @@ study::MeasureOptions measure_options(const DemOptions& options) {
     return measure;
 }
 
+void add_experiment_options(CLI::App& app, ExperimentOptions& options) {
+    app.add_option("EXPERIMENT", options.file, "experiment file (TOML)")->required();
+    app.add_option("--set", options.set, "another value for a key, e.g. --set river.n=1.5 (may be repeated)")
+        ->allow_extra_args(false);
+    app.add_option("--seed", options.seed, "another seed");
+    app.footer("Keys of the experiment file:\n" + study::experiment_reference());
+}
+
+study::Experiment experiment(const ExperimentOptions& options) {
+    std::vector<std::string> overrides = options.set;
+    if (!options.seed.empty()) overrides.push_back("seed=" + options.seed);
+    return study::read_experiment(options.file, overrides);
+}
+
 namespace {
 
 /// One status line that rewrites itself on a terminal (elsewhere nothing), and warnings kept back until the work is

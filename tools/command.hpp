@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "thalweg/study/analyze.hpp"
+#include "thalweg/study/parameters.hpp"
 
 namespace thalweg::tools {
 
@@ -34,6 +35,15 @@ struct DemOptions {
 void add_dem_options(CLI::App&, DemOptions&);
 io::ReadOptions read_options(const DemOptions&);
 study::MeasureOptions measure_options(const DemOptions&);
+
+/// An experiment file with what the command line changes in it, shared by simulate and run.
+struct ExperimentOptions {
+    std::string file;
+    std::vector<std::string> set;
+    std::string seed;
+};
+void add_experiment_options(CLI::App&, ExperimentOptions&);
+study::Experiment experiment(const ExperimentOptions&);
 
 /// A number the user typed. Throws Error, naming the option, unless it is finite and, where asked, above zero.
 enum class Sign { any, positive, not_negative };

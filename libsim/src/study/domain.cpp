@@ -198,18 +198,38 @@ Domain raster_on_catchment(const Experiment& e, const Catchment& c) {
     return domain;
 }
 
-/// The catchment's outline in metres on a plane, without the staircase of its cells.
-Polygon plane_outline(const Catchment& c, const io::LocalPlane& plane, double unit_m, double tolerance_m) {
+/// The plane in metres on which a catchment's TIN lies, and the way back to map coordinates.
+struct Plane {
+    io::LocalPlane local;  ///< used where the map is in degrees
+    bool geographic;
+    double unit_m;  ///< of the map, where it is projected
+
+    std::vector<Point> from_map(std::vector<Point> points) const {
+        if (geographic) return io::to_plane(local, points);
+        for (Point& p : points) p = {p.x * unit_m, p.y * unit_m};
+        return points;
+    }
+    std::vector<Point> to_map(std::vector<Point> points) const {
+        if (geographic) return io::from_plane(local, points);
+        for (Point& p : points) p = {p.x / unit_m, p.y / unit_m};
+        return points;
+    }
+};
+
+Plane plane_of(const Raster& raster) {
+    const Placement& place = raster.placement;
+    const Point middle = place.center(raster.grid.rows / 2, raster.grid.cols / 2);
+    return {.local = {.longitude_deg = middle.x, .latitude_deg = middle.y},
+            .geographic = place.geographic,
+            .unit_m = place.geographic ? 1 : raster.grid.east_west[0] / place.cell_width};
+}
+
+/// The catchment's outline in metres on its plane, without the staircase of its cells.
+Polygon plane_outline(const Catchment& c, const Plane& plane, double tolerance_m) {
     std::vector<Index> label(c.raster.values.size());
     std::transform(c.raster.values.begin(), c.raster.values.end(), label.begin(),
                    [](double value) { return std::isnan(value) ? none : Index{0}; });
-    Polygon outline = io::cell_outline(c.raster, label, 0);
-    if (c.raster.placement.geographic) {
-        outline = io::to_plane(plane, outline);
-    } else {
-        for (Point& p : outline) p = {p.x * unit_m, p.y * unit_m};
-    }
-    return io::simplify(outline, tolerance_m);
+    return io::simplify(plane.from_map(io::cell_outline(c.raster, label, 0)), tolerance_m);
 }
 
 /// Value of the cell that holds a position of the plane; NaN outside.
@@ -233,12 +253,8 @@ Index nearest(const std::vector<Point>& positions, const std::vector<std::uint8_
     return best;
 }
 
-Domain tin_on_catchment(Experiment e, const Catchment& c) {
-    const Raster& raster = c.raster;
-    const Placement& place = raster.placement;
-    const Point middle = place.center(raster.grid.rows / 2, raster.grid.cols / 2);
-    const io::LocalPlane plane{.longitude_deg = middle.x, .latitude_deg = middle.y};
-    const double cell_m = raster.grid.north_south[(raster.grid.rows - 1) / 2];
+/// As many nodes as the DEM has cells there, unless the experiment says otherwise.
+Experiment with_node_count(Experiment e, const Raster& raster) {
     if (e.domain.nodes && e.domain.spacing_m) {
         throw Error("domain.nodes and domain.spacing_m say the same thing: give one of them");
     }
@@ -246,23 +262,34 @@ Domain tin_on_catchment(Experiment e, const Catchment& c) {
         e.domain.nodes = static_cast<Index>(
             std::count_if(raster.values.begin(), raster.values.end(), [](double value) { return !std::isnan(value); }));
     }
+    return e;
+}
+
+/// Base level at the node of the outline nearest to the outlet, or all around.
+std::vector<Boundary> tin_boundary(const Mesh& mesh, const std::vector<Point>& map_positions, const Point& outlet,
+                                   std::optional<OutletRule> rule) {
+    std::vector<Boundary> boundary(mesh.size(), Boundary::interior);
+    for (Index node = 0; rule == OutletRule::all && node < mesh.size(); ++node) {
+        if (mesh.on_outline[node]) boundary[node] = Boundary::base_level;
+    }
+    boundary[nearest(map_positions, mesh.on_outline, outlet)] = Boundary::base_level;
+    return boundary;
+}
+
+Domain tin_on_catchment(const Experiment& e, const Catchment& c) {
+    const Raster& raster = c.raster;
+    const Plane plane = plane_of(raster);
+    const double cell_m = raster.grid.north_south[(raster.grid.rows - 1) / 2];
+    Mesh mesh = tin(with_node_count(e, raster), plane_outline(c, plane, cell_m));
     Domain domain;
-    if (!place.geographic) domain.unit_m = raster.grid.east_west[0] / place.cell_width;
-    Mesh mesh = tin(e, plane_outline(c, plane, domain.unit_m, cell_m));
-    domain.placement.crs_wkt = place.geographic ? plane.crs_wkt() : place.crs_wkt;
+    domain.unit_m = plane.unit_m;
+    domain.placement.crs_wkt = plane.geographic ? plane.local.crs_wkt() : raster.placement.crs_wkt;
     domain.positions_m = plane_positions(mesh);
     domain.extent_m = longer_side(domain.positions_m);
     domain.area_m2 = mesh::polygon_area(mesh.outline);
-
-    std::vector<Point> map_positions;
-    for (const Point& p : domain.positions_m) map_positions.push_back({p.x / domain.unit_m, p.y / domain.unit_m});
-    if (place.geographic) map_positions = io::from_plane(plane, domain.positions_m);
-    std::vector<Boundary> boundary(mesh.size(), Boundary::interior);
-    const Point outlet = place.center(raster.grid.row(c.outlet), raster.grid.col(c.outlet));
-    for (Index node = 0; node < mesh.size(); ++node) {
-        if (e.outlets == OutletRule::all && mesh.on_outline[node]) boundary[node] = Boundary::base_level;
-    }
-    boundary[nearest(map_positions, mesh.on_outline, outlet)] = Boundary::base_level;
+    const std::vector<Point> map_positions = plane.to_map(domain.positions_m);
+    const Point outlet = raster.placement.center(raster.grid.row(c.outlet), raster.grid.col(c.outlet));
+    auto boundary = tin_boundary(mesh, map_positions, outlet, e.outlets);
     domain.topology = std::move(mesh);
     drive(domain, e, std::move(boundary), raster.values[c.outlet]);
     for (Index node = 0; e.domain.initial == InitialSurface::dem && node < map_positions.size(); ++node) {

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stream-power steps from noise with lakes, per node and step: uplift 1e-3 m/yr, k 2e-5, 100 m between nodes, steps of
+// 2e4 yr, the rim fixed. One iteration is the first 50 steps.
+#include "cases.hpp"
+#include "thalweg/evolve/simulate.hpp"
+#include "thalweg/mesh/triangulate.hpp"
+#include "thalweg/terrain/route.hpp"
+
+namespace thalweg::bench {
+namespace {
+
+constexpr Index steps = 50;
+
+template <class Topology>
+void run(benchmark::State& state, const Topology& topology, const std::vector<Boundary>& boundary, double m, double n) {
+    const evolve::Setting setting{std::vector<double>(topology.size(), 1e-3), std::vector<double>(topology.size(), 1.0),
+                                  boundary};
+    const evolve::River river{.k = 2e-5, .m = m, .n = n};
+    for (auto _ : state) {
+        evolve::Landscape landscape{0, evolve::uniform_surface(topology.size(), 1.0, 1)};
+        for (Index node = 0; node < topology.size(); ++node) {
+            if (boundary[node] == Boundary::base_level) landscape.elevation_m[node] = 0;
+        }
+        evolve::simulate(topology, river, setting, {.step_yr = 2e4, .max_steps = steps, .convergence = 0}, landscape);
+        benchmark::DoNotOptimize(landscape);
+    }
+    per_item(state, static_cast<double>(topology.size()) * steps);
+}
+
+void raster_steps(benchmark::State& state) {
+    const auto size = static_cast<Index>(state.range(0));
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    const Grid grid = plane_grid(size, size, 100, 100);
+    auto boundary = terrain::data_edge(grid, std::vector<double>(grid.size(), 0.0));
+    for (Boundary& b : boundary) b = b == Boundary::open ? Boundary::base_level : Boundary::interior;
+    run(state, grid, boundary, 0.01 * static_cast<double>(state.range(2)), 0.1 * static_cast<double>(state.range(3)));
+}
+BENCHMARK(raster_steps)
+    ->ArgNames({"size", "threads", "100m", "10n"})
+    ->Args({1000, 1, 50, 10})
+    ->Args({1000, 2, 50, 10})
+    ->Args({1000, 1, 40, 10})
+    ->Args({1000, 1, 50, 15})
+    ->Args({2000, 1, 50, 10})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+
+void tin_steps(benchmark::State& state) {
+    const double side = 100 * std::sqrt(static_cast<double>(state.range(0)));
+    const Polygon square{{0, 0}, {side, 0}, {side, side}, {0, side}};
+    const Mesh mesh =
+        mesh::triangulate(square, mesh::poisson_disk_count(square, static_cast<Index>(state.range(0)), 1));
+    std::vector<Boundary> boundary;
+    for (const auto on : mesh.on_outline) boundary.push_back(on ? Boundary::base_level : Boundary::interior);
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    run(state, mesh, boundary, 0.01 * static_cast<double>(state.range(2)), 1);
+}
+BENCHMARK(tin_steps)
+    ->ArgNames({"nodes", "threads", "100m"})
+    ->Args({100000, 1, 50})
+    ->Args({1000000, 1, 50})
+    ->Args({1000000, 1, 40})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+
+}  // namespace
+}  // namespace thalweg::bench

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The chain from a DEM to drainage areas, per cell, on one thread and on two.
+#include "cases.hpp"
+#include "thalweg/terrain/accumulate.hpp"
+#include "thalweg/terrain/flats.hpp"
+#include "thalweg/terrain/lakes.hpp"
+#include "thalweg/terrain/route.hpp"
+
+namespace thalweg::bench {
+namespace {
+
+struct Dem {
+    Grid grid;
+    std::vector<double> z;
+    std::vector<Boundary> boundary;
+};
+
+Dem rough_dem(const benchmark::State& state) {
+    const auto size = static_cast<Index>(state.range(0));
+    Dem dem{plane_grid(size, size, 30, 30), {}, {}};
+    dem.z = rough_terrain(dem.grid);
+    dem.boundary = terrain::data_edge(dem.grid, dem.z);
+    return dem;
+}
+
+void fill(benchmark::State& state) {
+    const Dem dem = rough_dem(state);
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    for (auto _ : state) benchmark::DoNotOptimize(terrain::fill(dem.grid, dem.z, dem.boundary));
+    per_item(state, dem.grid.size());
+}
+
+void route(benchmark::State& state) {
+    const Dem dem = rough_dem(state);
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    for (auto _ : state) benchmark::DoNotOptimize(terrain::route(dem.grid, dem.z, dem.boundary));
+    per_item(state, dem.grid.size());
+}
+
+void fill_flats_route_area(benchmark::State& state) {
+    const Dem dem = rough_dem(state);
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    const std::vector<double> cells = terrain::cell_areas(dem.grid);
+    for (auto _ : state) {
+        const auto filled = terrain::fill(dem.grid, dem.z, dem.boundary);
+        auto directions = terrain::route(dem.grid, filled, dem.boundary);
+        terrain::resolve_flats(dem.grid, filled, dem.boundary, directions);
+        const auto graph = terrain::flow_graph(dem.grid, filled, directions);
+        benchmark::DoNotOptimize(terrain::accumulate(graph, cells));
+    }
+    per_item(state, dem.grid.size());
+}
+
+#define SIZES Args({1000, 1})->Args({1000, 2})->Args({4000, 1})->Args({4000, 2})->Unit(benchmark::kMillisecond)
+BENCHMARK(fill)->SIZES;
+BENCHMARK(route)->SIZES;
+BENCHMARK(fill_flats_route_area)->SIZES;
+
+}  // namespace
+}  // namespace thalweg::bench
