@@ -38,6 +38,13 @@ void hold_back_signals() {
     ::signal(SIGPIPE, SIG_IGN);
 }
 
+void let_signals_through() {
+    const sigset_t set = watched_signals();
+    pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+    ::signal(SIGXFSZ, SIG_DFL);
+    ::signal(SIGPIPE, SIG_DFL);
+}
+
 InterruptGuard::InterruptGuard(study::OutputFolder& folder) : watcher_([&folder] { watch(folder); }) {}
 
 InterruptGuard::~InterruptGuard() {

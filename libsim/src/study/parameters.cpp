@@ -152,6 +152,20 @@ class Reader {
         member = (folder_ / *text).lexically_normal();
     }
 
+    void read(const Field& field, const toml::node& node, std::string& member) const {
+        const auto text = node.value<std::string>();
+        if (!text) throw Error(fmt::format("{} must be a word in quotes, not {}", field.key, quoted(node)));
+        member = *text;
+    }
+
+    void read(const Field& field, const toml::node& node, std::array<double, 4>& member) const {
+        const toml::array* array = node.as_array();
+        if (array == nullptr || array->size() != member.size()) {
+            throw Error(fmt::format("{} must be four numbers in brackets, not {}", field.key, quoted(node)));
+        }
+        for (std::size_t i = 0; i < member.size(); ++i) read(field, (*array)[i], member[i]);
+    }
+
     void read(const Field& field, const toml::node& node, std::vector<double>& member) const {
         const toml::array* array = node.as_array();
         if (array == nullptr || array->size() != 2) {
@@ -192,11 +206,14 @@ void apply_override(toml::table& table, const std::string& text) {
 }
 
 std::string shown(double value) { return fmt::format("{}", value); }
-std::string shown(const std::filesystem::path& path) {
+std::string shown(const std::string& word) {
     std::ostringstream text;
-    text << toml::value<std::string>(std::filesystem::absolute(path).lexically_normal().string());
+    text << toml::value<std::string>(word);
     return text.str();
 }
+/// What was read from a file is absolute; a relative path is meant from where the experiment will lie.
+std::string shown(const std::filesystem::path& path) { return shown(path.lexically_normal().string()); }
+std::string shown(const std::array<double, 4>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 std::string shown(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 template <class Whole>
 requires std::is_unsigned_v<Whole> std::string shown(Whole value) { return fmt::format("{}", value); }

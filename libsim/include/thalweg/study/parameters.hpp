@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -66,6 +67,8 @@ struct Experiment {
     } output;
     struct {
         std::optional<std::filesystem::path> dem;
+        std::optional<std::string> source;          ///< of the fetcher's catalogue, instead of a DEM
+        std::optional<std::array<double, 4>> bbox;  ///< west, south, east, north (degrees)
         std::optional<double> uplift_m_per_yr;
         double uplift_sd_m_per_yr = 0;
         FitMethod method = FitMethod::slope_area;
@@ -131,6 +134,10 @@ void describe(AnyExperiment& e, Visit visit) {
           e.output.resolution);
     visit(Field{"output.interpolation", "", "how a TIN becomes a heightfield"}, e.output.interpolation);
     visit(Field{"study.dem", "", "the DEM to be explained"}, e.study.dem);
+    visit(Field{"study.source", "", "where to fetch the DEM from, instead of study.dem (thalweg fetch --help)"},
+          e.study.source);
+    visit(Field{"study.bbox", "degrees", "west, south, east and north edge of what is fetched", -180, 180},
+          e.study.bbox);
     visit(Field{"study.uplift_m_per_yr", "m/yr", "uplift rate of the real landscape (k cannot be told without)", 0,
                 infinity, true},
           e.study.uplift_m_per_yr);
