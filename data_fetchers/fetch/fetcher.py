@@ -30,6 +30,7 @@ class Job:
     window: reader.Window | None = None
     missing: list = field(default_factory=list)
     paths: dict = field(default_factory=dict)
+    looked: bool = False  #: the server was asked in this run
 
     def place(self, window):
         """Takes the cells it is to give, and looks which pieces of them the cache has."""
@@ -59,10 +60,13 @@ class Fetcher:
         reach = box if target is None else mosaic.box_under(target, 4)
         jobs = self._records(tile_lists.of(self.source, reach, self.web, self.cache, options.offline, options.refresh), reach)
         self._download_whole(jobs)
-        native = self._native(box, reach, jobs, target)
-        bounds = mosaic.bounds_in(native.bounds(), native.system(), wgs84())
-        for job in jobs:
-            job.place(mosaic.window_of(job.record, bounds))
+        native = self._place(jobs, reach)
+        stale = [job for job in jobs if job.missing and not job.looked and not options.offline]
+        if stale:  # what is added to a tile must be of the version that the server has now
+            for job in stale:
+                self._look_again(job)
+            self._download_whole(jobs)
+            native = self._place(jobs, reach)
         jobs = [job for job in jobs if job.window is not None]
         self._refuse_offline(jobs)
         if not jobs:
@@ -100,15 +104,21 @@ class Fetcher:
             raise UserError(f"--crs with {self.source.key} needs --cell-m, the size of the new cells")
         return mosaic.projected_grid(box, self.options.crs, size)
 
-    def _native(self, box, reach, jobs, target):
-        return mosaic.native_grid(box if target is None else reach, [job.record for job in jobs])
+    @staticmethod
+    def _place(jobs, reach):
+        """The grid of the source's own cells, every job placed under it."""
+        native = mosaic.native_grid(reach, [job.record for job in jobs])
+        bounds = bounds_in(native.bounds(), native.system(), wgs84())
+        for job in jobs:
+            job.place(mosaic.window_of(job.record, bounds))
+        return native
 
     def _records(self, found, box):
         """What is known of each tile, from the cache where that is enough; tiles that are not there drop out."""
         jobs = []
         for number, tile in enumerate(found):
             self.progress.status(f"looking at tile {number + 1} of {len(found)}")
-            job = self._local(tile) if tile.kind == "local" else self._remote(tile, box)
+            job = self._local(tile) if tile.kind == "local" else self._remote(tile)
             if job is not None:
                 jobs.append(job)
         self._refuse_offline([])
@@ -128,15 +138,12 @@ class Fetcher:
         record = {"name": tile.name, "address": os.path.basename(tile.address)} | reader.describe(data, tile.address)
         return Job(tile, record)
 
-    def _remote(self, tile, box):
+    def _remote(self, tile):
         self.web.check_host(tile.address, "tiles are on")
         store = self.cache.tile(self.source.key, tile.name, tile.address)
         record = store.record()
         if record and "wkt" in record and not (self.options.refresh and not self.options.offline):
-            job = Job(tile, record, store)
-            job.place(mosaic.window_of(record, (box.west, box.south, box.east, box.north)))
-            if not job.missing or self.options.offline:
-                return job
+            return Job(tile, record, store)
         if self.options.offline:
             if record is None:
                 self.lacking.append(tile.name)
@@ -147,16 +154,24 @@ class Fetcher:
         if self.source.kind == "api":
             self._require_key()
             return Job(tile, {"name": tile.name, "address": tile.address.split("?")[0], "version": "v1",
-                              "retrieved": cache_module.today()}, store)
+                              "retrieved": cache_module.today()}, store, looked=True)
         fresh = reader.look(tile, self.web)
         if fresh is None:
             store.remember({"name": tile.name, "absent": True})
             return None
         if record and "wkt" in record and record["version"] == fresh["version"]:
-            return Job(tile, record, store)  # keeps the day of the first look
+            if tile.kind == "cog" or store.piece(record, 0, 0):
+                return Job(tile, record, store, looked=True)  # keeps the day of the first look
         if "wkt" in fresh:
             store.remember(fresh)
-        return Job(tile, fresh, store)
+        return Job(tile, fresh, store, looked=True)
+
+    def _look_again(self, job):
+        """At a tile that was taken from the cache, of which pieces are wanted that the cache lacks."""
+        found = self._looked_at(job.tile, job.store, job.record)
+        if found is None:
+            raise ServerError(f"tile {job.tile.name} is in the cache in part, and the server has it no more (HTTP 404)")
+        job.record, job.looked = found.record, True
 
     def _require_key(self):
         if not os.environ.get(self.source["key"], "").strip():

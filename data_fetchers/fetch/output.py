@@ -7,7 +7,7 @@ import os
 import shutil
 
 import numpy as np
-from osgeo import gdal
+from osgeo import gdal, gdal_array, osr
 
 import cache
 import provenance
@@ -32,18 +32,14 @@ class Output:
             raise UserError(f"'{path}' exists already; name another file or use --force to replace it")
         if os.path.lexists(self.path + ".json") and not force and not _is_ours(self.path + ".json"):
             raise UserError(f"'{path}.json' exists and is no provenance of thalweg; name another file or use --force")
-        self._check_folder(path)
-
-    def _check_folder(self, path):
-        folder = self.folder
-        while not os.path.lexists(folder):
-            folder = os.path.dirname(folder)
-        if not os.path.isdir(folder) or not os.access(folder, os.W_OK | os.X_OK):
-            raise UserError(f"cannot write '{path}': '{folder}' is no folder that you may write into")
+        try:
+            self._make_partial()
+        except OSError as problem:
+            self.discard()
+            raise UserError(f"cannot write '{path}': {problem.strerror}") from None
 
     def write(self, canvas, content_of):
         """Writes both files; content_of(checksum) gives the provenance. Returns its text."""
-        self._make_partial()
         path = os.path.join(self._partial, self.name)
         try:
             _write_geotiff(path, canvas)
@@ -63,17 +59,17 @@ class Output:
     def _make_partial(self):
         self._make_folder()
         self._sweep()
-        self._partial = os.path.join(self.folder, f".{self.name}.partial-{os.getpid()}")
-        os.mkdir(self._partial)
-        self._held = _held(self._partial)
+        partial = os.path.join(self.folder, f".{self.name}.partial-{os.getpid()}")
+        os.mkdir(partial)
+        self._partial, self._held = partial, _held(partial)
 
     def _make_folder(self):
         missing, folder = [], self.folder
         while not os.path.isdir(folder):
             missing.append(folder)
             folder = os.path.dirname(folder)
-        os.makedirs(self.folder, exist_ok=True)
         self._made = missing
+        os.makedirs(self.folder, exist_ok=True)
 
     def _sweep(self):
         """What runs that were killed left: nobody holds it any more."""
@@ -121,7 +117,6 @@ def _is_ours(path):
 
 
 def _write_geotiff(path, canvas):
-    from osgeo import gdal_array, osr
     heights = np.where(np.isnan(canvas.heights), canvas.heights.dtype.type(NODATA), canvas.heights)
     memory = gdal.GetDriverByName("MEM").Create("", heights.shape[1], heights.shape[0], 1,
                                                gdal_array.NumericTypeCodeToGDALTypeCode(heights.dtype.type))

@@ -184,6 +184,7 @@ def message_of(problem):
 def main(words):
     for number_ in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
         signal.signal(number_, stop)
+    sys.unraisablehook = lambda _: None  # files that GDAL closes on a full disk: the reading back tells
     begun = []
     try:
         said, text, prints = fetch(words, begun)

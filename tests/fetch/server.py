@@ -8,10 +8,10 @@ import urllib.parse
 
 
 class Fault:
-    """How an answer goes wrong. `times`: for how many requests; then the server is well again."""
+    """How an answer goes wrong. `skip`: after how many that are well; `times`: how often; then the server is well again."""
 
-    def __init__(self, kind, times=10 ** 9, **values):
-        self.kind, self.times, self.values = kind, times, values
+    def __init__(self, kind, times=10 ** 9, skip=0, **values):
+        self.kind, self.times, self.skip, self.values = kind, times, skip, values
 
 
 class Server:
@@ -24,6 +24,7 @@ class Server:
         handler = type("Handler", (_Handler,), {"owner": self})
         self._server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
         self._server.daemon_threads = True
+        self._server.handle_error = lambda *_: None  # clients that are killed
         self.port = self._server.server_address[1]
         self.url = f"http://127.0.0.1:{self.port}"
         threading.Thread(target=self._server.serve_forever, args=(0.05,), daemon=True).start()
@@ -38,7 +39,9 @@ class Server:
     def fault_for(self, path):
         with self.lock:
             for part, fault in self.faults.items():
-                if part in path and fault.times > 0:
+                if part in path and fault.skip > 0:
+                    fault.skip -= 1
+                elif part in path and fault.times > 0:
                     fault.times -= 1
                     return fault
         return None
@@ -102,7 +105,7 @@ class _Handler(http.server.BaseHTTPRequestHandler):
         self.end_headers()
         time.sleep(delay)
         sent = part if limit is None else part[:limit]
-        self.owner.asked.append((self.path, first, last, len(sent)))
+        self.owner.asked.append((self.path, first, last, len(sent) if body else 0))
         if body:
             self.wfile.write(sent)
         if limit is not None:

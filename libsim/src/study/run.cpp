@@ -87,12 +87,19 @@ Json manifest_json(const Experiment& e, const NamedRaster& dem, const fs::path& 
             {"outputs", checksums(folder)}};
 }
 
+void check_dem_is_named(const Experiment& e) {
+    if (e.study.dem && e.study.source) throw Error("study.dem and study.source exclude each other: give one of them");
+    if (!e.study.dem && !e.study.source) {
+        throw Error("study.dem is needed: the DEM to be explained (or study.source and study.bbox)");
+    }
+    if (e.study.source && !e.study.bbox) {
+        throw Error("study.bbox is needed with study.source: west, south, east and north in degrees");
+    }
+}
+
 /// The study's DEM: the file it names, or what its source has for its box, which then is a part of the study.
 fs::path dem_of(const Experiment& e, const fs::path& folder, const Messages& messages) {
-    if (e.study.dem && e.study.source) throw Error("study.dem and study.source exclude each other: give one of them");
     if (e.study.dem) return *e.study.dem;
-    if (!e.study.source) throw Error("study.dem is needed: the DEM to be explained (or study.source and study.bbox)");
-    if (!e.study.bbox) throw Error("study.bbox is needed with study.source: west, south, east and north in degrees");
     messages.progress(fmt::format("fetching {}", *e.study.source));
     return fetch_dem(*e.study.source, *e.study.bbox, step_folder(folder, "fetch"));
 }
@@ -105,6 +112,7 @@ void draw_all(const fs::path& folder, const Messages& messages) {
 }  // namespace
 
 std::string run_study(const Experiment& e, Figures figures, const fs::path& folder, const Messages& messages) {
+    check_dem_is_named(e);
     if (!e.study.uplift_m_per_yr) {
         throw Error("study.uplift_m_per_yr is needed: slopes alone tell only k/u, and a simulation needs both");
     }
