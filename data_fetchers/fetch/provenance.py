@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """FILE.tif.json: where a DEM comes from, under what licence, and how to cite it."""
 import hashlib
+import os
 import re
 import shlex
 
@@ -30,9 +31,28 @@ def of(source, request, canvas, counts, jobs, name, checksum):
         "elevation_min_m": float(np.nanmin(heights)), "elevation_max_m": float(np.nanmax(heights)),
         "resampling": counts["resampling"], "void_cells": counts["void_cells"], "filled_cells": counts["filled_cells"],
         "cells_without_tile": counts["cells_without_tile"], "notes": counts["notes"],
-        "command": shlex.join([*PROGRAM.split(), *map(public_words, request)]),
+        "command": shlex.join([*PROGRAM.split(), *map(public_words, _telling(request))]),
         "tiles": [_tile(job) for job in sorted(jobs, key=lambda job: job.record["name"])],
     }
+
+
+#: Words that change nothing in the result, with how many follow them.
+SILENT = {"--end-with-parent": 0, "--quiet": 0, "--json": 0, "--force": 0, "--cache": 1, "--threads": 1}
+
+
+def _telling(words):
+    """The request as somebody elsewhere would repeat it: without what concerns this machine alone."""
+    result, i = [], 0
+    while i < len(words):
+        if words[i] in SILENT:
+            i += 1 + SILENT[words[i]]
+        elif words[i] == "--out":
+            result += ["--out", os.path.basename(words[i + 1])]
+            i += 2
+        else:
+            result.append(words[i])
+            i += 1
+    return result
 
 
 def _tile(job):
