@@ -50,7 +50,6 @@ class Fetcher:
         self.source, self.options, self.web, self.cache, self.progress = source, options, web, cache, progress
         self.notes = []
         self.lacking = []  #: what offline mode would have needed
-        self.bytes_read = 0
 
     def run(self, box, outline):
         """The canvas with the heights, and what is to be said of them."""
@@ -255,7 +254,6 @@ class Fetcher:
                 except Absent:
                     raise ServerError(f"tile {job.tile.name} vanished from the server (HTTP 404)") from None
                 path = job.store.add(job.record, row, col, content)
-                self.bytes_read += len(content)
             job.paths[row, col] = path
         self._count(1)
 

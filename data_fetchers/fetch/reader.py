@@ -17,7 +17,6 @@ import numpy as np
 from osgeo import gdal
 
 from cache import today
-from catalogue import host_of
 from problems import ServerError, UserError, public
 from region import lonlat
 from web import Absent, Passing, meaning_of
@@ -244,8 +243,3 @@ def _unpacked(path, tile):
     with open(target, "wb") as file:
         file.write(content)
     return target
-
-
-def check_remote(tile, web):
-    web.check_host(tile.address, "tiles are on")
-

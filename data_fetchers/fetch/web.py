@@ -107,6 +107,8 @@ class Web:
         def ask():
             started, count = time.monotonic(), 0
             with self.open(url) as response, open(path, "wb") as file:
+                if response.status == 204:
+                    raise UserError(f"{what}: the server has no data there")
                 while block := _read(response, url):
                     file.write(block)
                     count += len(block)

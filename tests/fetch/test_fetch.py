@@ -266,6 +266,8 @@ class Sources(Fetching):
             self.open_topography(status, b"API key " + KEY.encode() + b" unknown")
             result = self.refused(2, "does not accept the key", "opentopography:SRTMGL3", OPENTOPOGRAPHY_API_KEY=KEY)
             self.assertNotIn(KEY, result.stderr)
+        self.open_topography(204, b"")
+        self.refused(2, "no data there", "opentopography:SRTMGL3", OPENTOPOGRAPHY_API_KEY=KEY)
         for status in (429, 500):
             self.open_topography(status)
             result = self.refused(3, f"HTTP {status}", "opentopography:SRTMGL3", OPENTOPOGRAPHY_API_KEY=KEY)
