@@ -7,16 +7,19 @@
 namespace thalweg::tools {
 namespace {
 
+const std::map<std::string, study::Conditioning> conditionings{
+    {"fill", study::Conditioning::fill}, {"carve", study::Conditioning::carve}, {"none", study::Conditioning::none}};
+
 struct Options {
     CommonOptions common;
     DemOptions dem;
     std::string file;
-    study::Conditioning conditioning = study::Conditioning::fill;
+    std::string conditioning = "fill";
 };
 
 void run(const Options& options) {
     study::MeasureOptions measure = measure_options(options.dem);
-    measure.conditioning = options.conditioning;
+    measure.conditioning = conditionings.at(options.conditioning);
     const io::ReadOptions read = read_options(options.dem);
     run_into_folder(options.common, "analyze", [&](const auto& folder, const study::Messages& m) {
         return study::analyze(study::read_dem(options.file, read, m), measure, folder, m);
@@ -29,14 +32,11 @@ void add_analyze(CLI::App& app) {
     CLI::App* command = app.add_subcommand("analyze", "Measure a DEM: flow, channels, hypsometry, slope-area, Horton");
     auto options = std::make_shared<Options>();
     command->add_option("DEM", options->file, "elevations in any format GDAL reads")->required();
-    const std::map<std::string, study::Conditioning> words{{"fill", study::Conditioning::fill},
-                                                           {"carve", study::Conditioning::carve},
-                                                           {"none", study::Conditioning::none}};
     command
         ->add_option("--condition", options->conditioning,
                      "what becomes of pits: fill, carve or none (slopes are measured on carved profiles always)")
-        ->transform(CLI::CheckedTransformer(words).description("{fill,carve,none}"))
-        ->default_str("fill");
+        ->check(CLI::IsMember({"fill", "carve", "none"}))
+        ->capture_default_str();
     add_dem_options(*command, options->dem);
     add_common_options(*command, options->common, "analysis");
     command->callback([options] { run(*options); });

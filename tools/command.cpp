@@ -124,18 +124,21 @@ void run_into_folder(const CommonOptions& options, const std::string& figures,
     Console console(options.quiet);
     const study::Messages m = console.messages();
     study::OutputFolder folder(options.out, options.force ? study::IfPresent::replace : study::IfPresent::refuse);
-    const InterruptGuard guard(folder);
-    const std::string summary = work(folder.path(), m);
-    if (!figures.empty() && !options.no_figures) {
-        m.progress("drawing");
-        study::draw_figures(figures, folder.path());
+    std::string summary;
+    {
+        const InterruptGuard guard(folder);
+        summary = work(folder.path(), m);
+        if (!figures.empty() && !options.no_figures) {
+            m.progress("drawing");
+            study::draw_figures(figures, folder.path());
+        }
     }
     folder.commit();
     console.finish();
-    if (options.json)
-        std::cout << summary;
-    else if (!options.quiet)
-        std::cerr << "thalweg: results are in " << options.out << '\n';
+    if (options.json && !(std::cout << summary << std::flush)) {
+        throw Error("the summary cannot be written to standard output; the results are in " + options.out);
+    }
+    if (!options.json && !options.quiet) std::cerr << "thalweg: results are in " << options.out << '\n';
 }
 
 }  // namespace thalweg::tools

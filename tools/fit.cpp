@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/study/fit.hpp"
 
-#include <map>
 #include <memory>
 
 #include "command.hpp"
+#include "thalweg/core/error.hpp"
 
 namespace thalweg::tools {
 namespace {
@@ -16,12 +16,12 @@ struct Options {
     std::string target;
     std::string uplift, uplift_sd, n, theta_fixed, area_min, area_max;
     std::string method = "slope-area";
-    study::FitFrom from = study::FitFrom::nodes;
+    std::string from = "nodes";
 };
 
 study::FitOptions fit_options(const Options& options) {
     study::FitOptions fit;
-    fit.from = options.from;
+    fit.from = options.from == "raster" ? study::FitFrom::raster : study::FitFrom::nodes;
     fit.read = read_options(options.dem);
     fit.measure = measure_options(options.dem);
     const auto given = [](const char* name, const std::string& text, Sign sign) -> std::optional<double> {
@@ -31,7 +31,9 @@ study::FitOptions fit_options(const Options& options) {
     fit.fit.uplift_m_per_yr = given("--uplift-m-per-yr", options.uplift, Sign::positive);
     fit.fit.uplift_sd_m_per_yr = given("--uplift-sd", options.uplift_sd, Sign::not_negative).value_or(0);
     fit.fit.n = given("--n", options.n, Sign::positive).value_or(1);
+    if (fit.fit.n < 0.3 || fit.fit.n > 5) throw Error("--n must lie between 0.3 and 5, not " + options.n);
     fit.fit.theta_fixed = given("--theta-fixed", options.theta_fixed, Sign::positive);
+    if (fit.fit.theta_fixed.value_or(0) > 5) throw Error("--theta-fixed must be at most 5, not " + options.theta_fixed);
     fit.fit.area_min_m2 = given("--area-min-m2", options.area_min, Sign::not_negative);
     fit.fit.area_max_m2 = given("--area-max-m2", options.area_max, Sign::positive);
     return fit;
@@ -58,11 +60,9 @@ void add_fit(CLI::App& app) {
     command->add_option("--area-min-m2", options->area_min, "smallest drainage area in the fit");
     command->add_option("--area-max-m2", options->area_max, "largest drainage area in the fit");
     command->add_option("--theta-fixed", options->theta_fixed, "hold the concavity m/n at this value");
-    const std::map<std::string, study::FitFrom> words{{"nodes", study::FitFrom::nodes},
-                                                      {"raster", study::FitFrom::raster}};
     command->add_option("--from", options->from, "of a simulation: its mesh nodes, or its raster measured like a DEM")
-        ->transform(CLI::CheckedTransformer(words).description("{nodes,raster}"))
-        ->default_str("nodes");
+        ->check(CLI::IsMember({"nodes", "raster"}))
+        ->capture_default_str();
     add_dem_options(*command, options->dem);
     add_common_options(*command, options->common, "fit");
     command->callback([options] { run(*options); });

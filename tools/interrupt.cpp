@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "interrupt.hpp"
 
+#include "thalweg/study/script.hpp"
+
 #include <pthread.h>
 #include <signal.h>
 #include <unistd.h>
@@ -24,6 +26,7 @@ void watch(study::OutputFolder& folder) {
     int sign = 0;
     sigwait(&set, &sign);
     if (sign == leave) return;
+    study::stop_script();
     folder.discard();
     std::cerr << "thalweg: error: stopped by a signal; nothing was written" << std::endl;
     ::_exit(128 + sign);

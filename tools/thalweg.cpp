@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The command line: a table of subcommands, and what becomes of errors.
+#include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
@@ -9,6 +10,7 @@
 #include "command.hpp"
 #include "interrupt.hpp"
 #include "thalweg/core/error.hpp"
+#include "thalweg/study/manifest.hpp"
 
 namespace {
 
@@ -37,9 +39,24 @@ void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
     throw thalweg::Error("unknown command '" + std::string(argv[1]) + "'; there are:" + known);
 }
 
+/// The first argument that nobody expected, in our words; otherwise CLI11's.
+std::string what_was_wrong(const CLI::App& app, const CLI::ParseError& error) {
+    if (error.get_name() != "ExtrasError") return error.what();
+    const std::vector<std::string> remaining = app.remaining(true);
+    const auto option = std::find_if(remaining.begin(), remaining.end(), [](const auto& r) { return r[0] == '-'; });
+    if (option == remaining.end()) return "unexpected argument '" + remaining.front() + "'";
+    return "unknown option '" + *option + "'";
+}
+
+std::string help_of(const CLI::App& app) {
+    const auto used = app.get_subcommands();
+    return used.empty() ? "thalweg --help" : "thalweg " + used.front()->get_name() + " --help";
+}
+
 int parse_and_run(int argc, char** argv) {
     CLI::App app{"Thalweg simulates landscapes, measures real ones, fits the one to the other, and compares them."};
     app.name("thalweg");
+    app.set_version_flag("--version", "thalweg " + thalweg::study::versions().thalweg);
     app.require_subcommand(1);
     app.failure_message([](const CLI::App*, const CLI::Error& error) { return std::string(error.what()); });
     for (const auto add : {thalweg::tools::add_analyze, thalweg::tools::add_simulate, thalweg::tools::add_fit,
@@ -53,7 +70,7 @@ int parse_and_run(int argc, char** argv) {
     } catch (const CLI::Success& help) {
         return app.exit(help);
     } catch (const CLI::ParseError& error) {
-        return fail(users_to_mend, std::string(error.what()) + " (see thalweg --help)");
+        return fail(users_to_mend, what_was_wrong(app, error) + " (see " + help_of(app) + ")");
     }
     return 0;
 }

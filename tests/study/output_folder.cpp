@@ -31,9 +31,12 @@ TEST_CASE("Without a commit nothing is left, not even the parents that were made
 
 TEST_CASE("An existing folder is refused, or replaced whole when asked") {
     const TempFolder temp;
-    std::filesystem::create_directory(temp / "out");
-    std::ofstream(temp / "out/summary.json") << "old";
-    std::ofstream(temp / "out/stale.txt") << "old";
+    {
+        OutputFolder first(temp / "out", IfPresent::refuse);
+        write_text(first.path() / "summary.json", "old");
+        write_text(first.path() / "stale.txt", "old");
+        first.commit();
+    }
     CHECK(error_of([&] { OutputFolder(temp / "out", IfPresent::refuse); }).find("--force") != std::string::npos);
     {
         OutputFolder abandoned(temp / "out", IfPresent::replace);
@@ -51,12 +54,25 @@ TEST_CASE("What is not ours is never replaced") {
     const TempFolder temp;
     std::filesystem::create_directory(temp / "thesis");
     std::ofstream(temp / "thesis/chapter1.txt") << "years of work";
+    std::ofstream(temp / "thesis/manifest.json") << "{}";
     CHECK(test::is_sentence(error_of([&] { OutputFolder(temp / "thesis", IfPresent::replace); })));
     temp.text("file", "content");
     CHECK(test::is_sentence(error_of([&] { OutputFolder(temp / "file", IfPresent::replace); })));
     CHECK(test::is_sentence(error_of([&] { OutputFolder(temp / "file/below", IfPresent::refuse); })));
     CHECK(test::bytes_of(temp / "thesis/chapter1.txt") == "years of work");
     CHECK(test::bytes_of(temp / "file") == "content");
+}
+
+TEST_CASE("A file that a user put beside our results keeps them from being replaced") {
+    const TempFolder temp;
+    OutputFolder folder(temp / "out", IfPresent::refuse);
+    std::filesystem::create_directory(folder.path() / "figures");
+    write_text(folder.path() / "figures/map.png", "ours");
+    folder.commit();
+    CHECK(error_of([&] { OutputFolder(temp / "out", IfPresent::replace); }) == "");
+    std::ofstream(temp / "out/figures/notes.txt") << "mine";
+    CHECK(error_of([&] { OutputFolder(temp / "out", IfPresent::replace); }).find("notes.txt") != std::string::npos);
+    CHECK(test::bytes_of(temp / "out/figures/notes.txt") == "mine");
 }
 
 TEST_CASE("Text that cannot be written whole is an error") {

@@ -100,7 +100,8 @@ SlopeSolution implicit_slope(double drop, double length, double c, double n) {
 }
 
 double MassBalance::relative_residual() const {
-    return uplifted_m3 == 0 ? 0 : (uplifted_m3 - exported_m3 - stored_m3) / uplifted_m3;
+    const double turned_over = uplifted_m3 > 0 ? uplifted_m3 : exported_m3;
+    return turned_over > 0 ? (uplifted_m3 - exported_m3 - stored_m3) / turned_over : 0;
 }
 
 }  // namespace thalweg::evolve

@@ -3,6 +3,7 @@
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
+#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
@@ -128,8 +129,12 @@ void build(ceres::Problem& problem, const Target& target, const SlopeAreaFitOpti
     if (options.theta_fixed) problem.SetParameterBlockConstant(&at.m);
 }
 
+/// Ceres speaks through glog even when it is told to be silent; what matters reaches the user as an Error.
+void keep_ceres_quiet() { FLAGS_minloglevel = google::FATAL; }
+
 /// One solution with a given width of the loss, starting from `at`.
 void solve(const Target& target, const SlopeAreaFitOptions& options, Solution& at) {
+    keep_ceres_quiet();
     ceres::Problem problem;
     build(problem, target, options, at);
     ceres::Solver::Options settings;
@@ -147,6 +152,7 @@ void solve(const Target& target, const SlopeAreaFitOptions& options, Solution& a
     at.iterations += static_cast<int>(summary.iterations.size());
     at.converged = summary.termination_type == ceres::CONVERGENCE;
     at.message = summary.message;
+    if (!summary.IsSolutionUsable()) throw Error("the slope-area bins do not determine a power law");
 
     ceres::Covariance::Options exact;
     exact.algorithm_type = ceres::DENSE_SVD;

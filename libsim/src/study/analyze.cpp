@@ -52,17 +52,6 @@ std::vector<double> esri_codes(const FlowDirections& directions, std::span<const
     return codes;
 }
 
-/// A number of the links on their nodes, 0 elsewhere; a shared node takes that of the link it begins.
-std::vector<double> on_channels(const channel::StreamNetwork& network, const std::vector<Index>& numbers, Index size) {
-    std::vector<double> values(size, 0.0);
-    for (Index link = network.size(); link-- > 0;) {
-        const auto nodes = network.nodes_of(link);
-        const bool ends_here = network.downstream[link] == none;
-        for (const Index node : nodes.first(nodes.size() - (ends_here ? 0 : 1))) values[node] = numbers[link];
-    }
-    return values;
-}
-
 void write_rasters(const Raster& dem, const RasterMeasurement& m, const std::filesystem::path& folder) {
     const auto write = [&](const char* name, std::span<const double> values, io::Layer layer) {
         io::write_raster(folder / name, dem.grid, dem.placement, values, layer);
@@ -79,10 +68,12 @@ void write_rasters(const Raster& dem, const RasterMeasurement& m, const std::fil
           {.nodata = {}, .description = "drainage area (m2)"});
     write("flow_direction.tif", esri_codes(m.directions, dem.values),
           {.type = io::CellType::uint8, .nodata = 255, .description = "D8 direction (ESRI codes, 0 outlet)"});
-    const auto& network = m.statistics.network;
-    write("strahler.tif", on_channels(network, network.strahler, dem.grid.size()),
+    const auto as_numbers = [](const std::vector<Index>& values) {
+        return std::vector<double>(values.begin(), values.end());
+    };
+    write("strahler.tif", as_numbers(m.statistics.strahler_of),
           {.type = io::CellType::uint8, .nodata = {}, .description = "Strahler order (0: no channel)"});
-    write("shreve.tif", on_channels(network, network.shreve, dem.grid.size()),
+    write("shreve.tif", as_numbers(m.statistics.shreve_of),
           {.type = io::CellType::int32, .nodata = {}, .description = "Shreve magnitude (0: no channel)"});
 }
 
@@ -90,7 +81,7 @@ void write_tables(const Raster& dem, const Statistics& s, const std::filesystem:
     const PositionOf position = positions(dem);
     auto outlines = io::cell_outlines(dem, s.basin_of, static_cast<Index>(s.basins.size()));
     io::write_geopackage(folder / "network.gpkg",
-                         {links_table(s.network, position), junctions_table(s.network, position),
+                         {links_table(s.network, position), junctions_table(s, position),
                           basins_table(s, position, std::move(outlines))},
                          dem.placement.crs_wkt);
     io::write_csv(folder / "hypsometry.csv", hypsometry_table(s.hypsometry));
@@ -121,6 +112,9 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
     std::vector<std::string> notes = dem.warnings;
     Json summary = terrain_json(input_of(dem, m), m.statistics, positions(dem.raster),
                                 conditioning_json(m.conditioning, options.conditioning), notes);
+    for (const std::string& note : notes) {
+        if (note.starts_with("channels:")) messages.warning(note);
+    }
     summary["measured_on"] = "raster";
     summary["slope_area"]["segment_drop_m"] = m.segment_drop_m;
     summary["slope_area"]["vertical_quantum_m"] = m.vertical_quantum_m;

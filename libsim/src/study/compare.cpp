@@ -31,7 +31,7 @@ Side load(const fs::path& path, const CompareOptions& options, const Messages& m
         case ResultKind::analyzed:
             return {path, std::nullopt, read_json(path / "summary.json")};
         case ResultKind::simulated:
-            return {path, read_dem(path / "elevation.tif", {}, messages), nullptr};
+            return {path, read_dem(path / "elevation.tif", {}, {.progress = messages.progress}), nullptr};
         case ResultKind::file:
             break;
     }
@@ -43,12 +43,22 @@ double at(const Json& json, const char* pointer) {
     return json.contains(where) && json.at(where).is_number() ? json.at(where).get<double>() : nan;
 }
 
-/// One threshold for both: the user's, that of a side measured before, or the larger of the two defaults.
+/// One threshold for both: the user's, that of a side measured before, or the larger of the two defaults. Throws Error
+/// where a side was measured with another one.
 double common_threshold(const Side& a, const Side& b, const CompareOptions& options) {
-    if (options.measure.channel_area_m2) return *options.measure.channel_area_m2;
+    std::optional<double> common = options.measure.channel_area_m2;
     for (const Side* side : {&a, &b}) {
-        if (!side->raster) return at(side->summary, "/channels/threshold_area_m2");
+        if (side->raster) continue;
+        const double measured = at(side->summary, "/channels/threshold_area_m2");
+        if (common && *common != measured) {
+            throw Error(
+                fmt::format("'{}' was measured with channels from {} m2, not {} m2: both sides need one ruler; "
+                            "give the DEMs, or analyze them with the same --channel-area-m2",
+                            side->path.string(), measured, *common));
+        }
+        common = measured;
     }
+    if (common) return *common;
     return std::max(default_channel_area(data_area(a.raster->raster)),
                     default_channel_area(data_area(b.raster->raster)));
 }
@@ -57,7 +67,7 @@ void measure_side(Side& side, MeasureOptions options, double threshold_m2) {
     if (!side.raster) return;
     options.channel_area_m2 = threshold_m2;
     const RasterMeasurement m = measure_raster(side.raster->raster, options);
-    std::vector<std::string> notes;
+    std::vector<std::string> notes = side.raster->warnings;
     side.summary = terrain_json({}, m.statistics, positions(side.raster->raster), nullptr, notes);
     side.summary["notes"] = notes;
 }
@@ -80,9 +90,10 @@ Curve hypsometric_curve(const Json& summary) {
     Curve curve;
     const Json& h = summary.at("hypsometry");
     for (std::size_t i = 0; i < h.at("relative_height").size(); ++i) {
-        if (!h["relative_height"][i].is_number() || !h["relative_area"][i].is_number()) continue;
-        curve.x.push_back(h["relative_height"][i]);
-        curve.y.push_back(h["relative_area"][i]);
+        const Json &height = h.at("relative_height").at(i), &area = h.at("relative_area").at(i);
+        if (!height.is_number() || !area.is_number()) continue;
+        curve.x.push_back(height);
+        curve.y.push_back(area);
     }
     return curve;
 }
@@ -143,12 +154,20 @@ Json hypsometry_aspect(const Json& a, const Json& b) {
                   "area between the two hypsometric curves (share of the unit square)");
 }
 
+Json relief_aspect(const Json& a, const Json& b) {
+    const auto relief = [](const Json& side) {
+        return at(side, "/input/elevation_max_m") - at(side, "/input/elevation_min_m");
+    };
+    return aspect("relief", "relief_m", relief(a), relief(b), std::abs(std::log(relief(a)) - std::log(relief(b))),
+                  "|ln(relief of a / relief of b)|, relief being the highest minus the lowest elevation (m)");
+}
+
 Json horton_aspect(const Json& a, const Json& b) {
     double squares = 0;
     int count = 0;
     for (const char* ratio :
          {"/horton/RB/regression", "/horton/RL/regression", "/horton/RA/regression", "/horton/RS/regression"}) {
-        const double difference = std::log(at(a, ratio) / at(b, ratio));
+        const double difference = std::log(at(a, ratio)) - std::log(at(b, ratio));
         if (!std::isfinite(difference)) continue;
         squares += difference * difference;
         ++count;
@@ -161,21 +180,21 @@ Json horton_aspect(const Json& a, const Json& b) {
 /// What of a side the figures need: its name, and the measures compared.
 Json side_json(const Side& side) {
     Json json{{"name", side.path.filename().string()}};
-    for (const char* key : {"hypsometry", "channels", "strahler", "horton", "slope_area"}) {
+    for (const char* key : {"input", "hypsometry", "channels", "strahler", "horton", "slope_area"}) {
         json[key] = side.summary.at(key);
     }
     return json;
 }
 
-std::vector<std::string> notes_of(const Side& a, const Side& b, double threshold_m2) {
+std::vector<std::string> notes_of(const Side& a, const Side& b, const Json& aspects) {
     std::vector<std::string> notes{
         "scale: the spread between realisations of a model is not computed, so no difference is judged"};
+    for (const Json& aspect : aspects) {
+        if (!aspect.at("distance").is_null()) continue;
+        notes.push_back(fmt::format("{}: the sides have nothing in common by which to measure a distance",
+                                    aspect.at("name").get<std::string>()));
+    }
     for (const Side* side : {&a, &b}) {
-        if (at(side->summary, "/channels/threshold_area_m2") != threshold_m2) {
-            notes.push_back(fmt::format("the channels of '{}' were measured with another threshold ({} m2, not {} m2)",
-                                        side->path.filename().string(),
-                                        at(side->summary, "/channels/threshold_area_m2"), threshold_m2));
-        }
         for (const Json& note : side->summary.value("notes", Json::array())) {
             notes.push_back(fmt::format("{}: {}", side->path.filename().string(), note.get<std::string>()));
         }
@@ -189,17 +208,22 @@ std::string compare(const fs::path& a_path, const fs::path& b_path, const Compar
                     const fs::path& folder, const Messages& messages) {
     Side a = load(a_path, options, messages), b = load(b_path, options, messages);
     const double threshold = common_threshold(a, b, options);
+    if (!a.raster && !b.raster) {
+        MeasureOptions other = options.measure;
+        other.channel_area_m2.reset();
+        refuse_dem_options(a_path, options.read, other);
+    }
     messages.progress("measuring both sides");
     measure_side(a, options.measure, threshold);
     measure_side(b, options.measure, threshold);
     try {
         const Json aspects{slope_area_aspect(a.summary, b.summary), hypsometry_aspect(a.summary, b.summary),
-                           horton_aspect(a.summary, b.summary)};
+                           horton_aspect(a.summary, b.summary), relief_aspect(a.summary, b.summary)};
         const Json comparison{{"a", side_json(a)},
                               {"b", side_json(b)},
                               {"channel_threshold_area_m2", threshold},
                               {"aspects", aspects},
-                              {"notes", notes_of(a, b, threshold)}};
+                              {"notes", notes_of(a, b, aspects)}};
         std::string text = text_of(comparison);
         write_text(folder / "comparison.json", text);
         return text;

@@ -133,7 +133,12 @@ Grid rectangle_grid(const Experiment& e) {
 Mesh tin(const Experiment& e, const Polygon& outline) {
     const auto points = e.domain.spacing_m ? mesh::poisson_disk(outline, *e.domain.spacing_m, e.seed)
                                            : mesh::poisson_disk_count(outline, e.domain.nodes.value(), e.seed);
-    return mesh::triangulate(outline, points);
+    Mesh mesh = mesh::triangulate(outline, points);
+    if (std::find(mesh.on_outline.begin(), mesh.on_outline.end(), std::uint8_t{0}) == mesh.on_outline.end()) {
+        throw Error(
+            fmt::format("all {} nodes lie on the outline, so nothing can be eroded: ask for more nodes", mesh.size()));
+    }
+    return mesh;
 }
 
 Domain rectangle_domain(const Experiment& e) {
@@ -330,7 +335,9 @@ Domain make_domain(const Experiment& e, const Messages& messages) {
     const NamedRaster dem = read_dem(*e.domain.dem, {}, messages);
     MeasureOptions options;
     options.channel_area_m2 = e.study.channel_area_m2;
-    return make_domain(e, largest_complete_catchment(dem.raster, options));
+    Domain domain = make_domain(e, largest_complete_catchment(dem.raster, options));
+    domain.warnings = dem.warnings;
+    return domain;
 }
 
 }  // namespace thalweg::study

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include <limits>
+#include <cmath>
 
 #include "study/report_json.hpp"
 #include "study/results.hpp"
@@ -21,6 +21,7 @@ struct Target {
     std::vector<channel::SlopeAreaBin> bins;
     std::string measured_on;
     Json steady_check;
+    std::vector<std::string> warnings{};  ///< of reading it
 };
 
 /// Nodes of a simulation whose slope the river made, not the talus limit.
@@ -48,6 +49,13 @@ Target analyzed_target(const fs::path& folder) {
     const auto& count = numbers_of(table, "count");
     Target target{.bins = {}, .measured_on = "analyze folder", .steady_check = Json::object()};
     for (std::size_t i = 0; i < area.size(); ++i) {
+        const bool counted = count[i] >= 1 && count[i] < none && count[i] == std::floor(count[i]);
+        if (!counted || (count[i] > 1 && !(slope_se[i] >= 0))) {
+            throw Error(
+                fmt::format("'{}': line {}: a bin needs a count of at least 1, and a standard error where it "
+                            "counts more than one; analyze the DEM anew",
+                            (folder / "slope_area.csv").string(), i + 2));
+        }
         target.bins.push_back({area[i], slope[i], slope_se[i], static_cast<Index>(count[i])});
     }
     return target;
@@ -58,16 +66,21 @@ Target raster_target(const fs::path& file, const FitOptions& options, const Mess
     messages.progress("routing flow and measuring");
     return {.bins = measure_raster(dem.raster, options.measure).statistics.slope_area.bins,
             .measured_on = "raster",
-            .steady_check = Json::object()};
+            .steady_check = Json::object(),
+            .warnings = dem.warnings};
 }
 
 Target target_of(const fs::path& path, const FitOptions& options, const Messages& messages) {
     switch (kind_of(path)) {
         case ResultKind::analyzed:
+            refuse_dem_options(path, options.read, options.measure);
             return analyzed_target(path);
         case ResultKind::simulated:
-            if (options.from == FitFrom::nodes) return node_target(path);
-            return raster_target(path / "elevation.tif", options, messages);
+            if (options.from == FitFrom::nodes) {
+                refuse_dem_options(path, options.read, options.measure);
+                return node_target(path);
+            }
+            return raster_target(path / "elevation.tif", options, {.progress = messages.progress});
         case ResultKind::file:
             break;
     }
@@ -81,6 +94,16 @@ Json fit_json(const infer::SlopeAreaFit& f, const FitOptions& options, const Tar
     Json steady = target.steady_check;
     steady["curvature"] = number(f.curvature.value);
     steady["curvature_se"] = number(f.curvature.standard_error);
+    std::vector<std::string> notes = f.notes;
+    notes.insert(notes.end(), target.warnings.begin(), target.warnings.end());
+    if (!std::isfinite(f.curvature.value)) notes.push_back("steady_check: the curvature needs at least four bins");
+    if (f.k && !std::isfinite(f.k->interval95[0])) notes.push_back("k_ci95: too wide to be told in numbers");
+    if (f.area_range_m2[1] < 20 * f.area_range_m2[0]) {
+        notes.push_back(
+            fmt::format("area_range_m2: the areas fitted span a factor of {:.0f} only, so what holds beyond "
+                        "them is a guess",
+                        f.area_range_m2[1] / f.area_range_m2[0]));
+    }
     const auto& u = options.fit.uplift_m_per_yr;
     return {{"method", "slope-area"},
             {"measured_on", target.measured_on},
@@ -114,7 +137,7 @@ Json fit_json(const infer::SlopeAreaFit& f, const FitOptions& options, const Tar
             {"converged", f.converged},
             {"message", f.message},
             {"identifiable", f.identifiable},
-            {"notes", f.notes}};
+            {"notes", notes}};
 }
 
 Table curve_table(const infer::SlopeAreaFit& f) {

@@ -26,24 +26,37 @@ std::size_t count(const std::vector<std::uint8_t>& flags) {
     return static_cast<std::size_t>(std::count(flags.begin(), flags.end(), std::uint8_t{1}));
 }
 
-ChannelStatistics channel_statistics(const channel::StreamNetwork& network, double threshold_m2, double basin_area_m2) {
+Index highest(const std::vector<Index>& numbers) {
+    return numbers.empty() ? 0 : *std::max_element(numbers.begin(), numbers.end());
+}
+
+/// Nodes where rivers end; several may end in one.
+Index count_outlets(const channel::StreamNetwork& network) {
+    std::vector<Index> ends;
+    for (Index link = 0; link < network.size(); ++link) {
+        if (network.downstream[link] == none) ends.push_back(network.nodes_of(link).back());
+    }
+    std::sort(ends.begin(), ends.end());
+    return static_cast<Index>(std::unique(ends.begin(), ends.end()) - ends.begin());
+}
+
+ChannelStatistics channel_statistics(const Statistics& s, double threshold_m2, double basin_area_m2) {
+    const channel::StreamNetwork& network = s.network;
     ChannelStatistics c{};
     c.threshold_area_m2 = threshold_m2;
     c.basin_area_m2 = basin_area_m2;
     c.links = network.size();
     std::vector<std::uint8_t> has_upstream(network.size(), 0);
     for (const Index below : network.downstream) {
-        if (below == none)
-            ++c.outlets;
-        else if (!std::exchange(has_upstream[below], std::uint8_t{1}))
-            ++c.junctions;
+        if (below != none && !std::exchange(has_upstream[below], std::uint8_t{1})) ++c.junctions;
     }
     for (Index link = 0; link < network.size(); ++link) {
         c.sources += !has_upstream[link];
         c.total_length_m += network.length_m[link];
-        c.max_strahler = std::max(c.max_strahler, network.strahler[link]);
-        c.max_shreve = std::max(c.max_shreve, network.shreve[link]);
     }
+    c.outlets = count_outlets(network);
+    c.max_strahler = highest(s.strahler_of);
+    c.max_shreve = highest(s.shreve_of);
     c.drainage_density_per_m =
         basin_area_m2 > 0 ? c.total_length_m / basin_area_m2 : std::numeric_limits<double>::quiet_NaN();
     return c;
@@ -73,12 +86,7 @@ std::vector<BasinStatistics> basin_statistics(const RoutedTerrain& terrain, std:
         const double integral = relief > 0 ? mean_height / relief : std::numeric_limits<double>::quiet_NaN();
         result.push_back({basins[b], relief, integral, 0});
     }
-    for (Index link = 0; link < s.network.size(); ++link) {
-        const Index basin = s.basin_of[s.network.nodes_of(link).front()];
-        if (basin != none) {
-            result[basin].max_strahler = std::max(result[basin].max_strahler, s.network.strahler[link]);
-        }
-    }
+    for (std::size_t b = 0; b < basins.size(); ++b) result[b].max_strahler = s.strahler_of[basins[b].outlet];
     return result;
 }
 
@@ -182,6 +190,8 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
     s.hypsometry = terrain::hypsometry(ground_m, terrain.cell_area_m2);
     const auto all_channels = channel::channels_by_area(terrain.drainage_area_m2, threshold);
     const auto channels = channel::channels_by_area(terrain.drainage_area_m2, threshold, used);
+    s.strahler_of = channel::strahler_orders(terrain.graph, channels);
+    s.shreve_of = channel::shreve_magnitudes(terrain.graph, channels);
     s.network = channel::stream_network(terrain.graph, channels, terrain.drainage_area_m2, terrain.elevation_m);
 
     const auto basins =
@@ -191,7 +201,7 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
     const double basin_area =
         std::accumulate(basins.begin(), basins.end(), 0.0, [](double sum, const auto& b) { return sum + b.area_m2; });
 
-    s.channels = channel_statistics(s.network, threshold, basin_area);
+    s.channels = channel_statistics(s, threshold, basin_area);
     s.channels.nodes = static_cast<Index>(count(channels));
     const std::size_t everywhere = count(all_channels);
     s.channels.share_used = everywhere > 0 ? static_cast<double>(s.channels.nodes) / static_cast<double>(everywhere)

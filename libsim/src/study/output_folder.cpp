@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
+#include <set>
 #include <sstream>
 
 #include "thalweg/core/error.hpp"
@@ -17,13 +19,27 @@ fs::path hidden_neighbour(const fs::path& final, const char* what) {
     return final.parent_path() / fmt::format(".{}.{}-{}", final.filename().string(), what, ::getpid());
 }
 
-/// A study's or a command's folder holds at least one of these; anything else is not ours to delete.
-bool holds_our_results(const fs::path& folder) {
-    if (fs::is_empty(folder)) return true;
-    for (const char* name : {"summary.json", "fit.json", "comparison.json", "manifest.json"}) {
-        if (fs::is_regular_file(folder / name)) return true;
+/// Names everything in a folder of results, so that it can be told later what is ours to delete.
+constexpr const char* list_name = ".thalweg-files";
+
+std::vector<std::string> files_below(const fs::path& folder) {
+    std::vector<std::string> files;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (!entry.is_directory()) files.push_back(fs::relative(entry.path(), folder).generic_string());
     }
-    return false;
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+/// The first file that is not in the folder's own list; "" if there is none.
+std::string first_foreign_file(const fs::path& folder) {
+    std::set<std::string> ours{list_name};
+    std::ifstream list(folder / list_name);
+    for (std::string line; std::getline(list, line);) ours.insert(line);
+    for (const std::string& file : files_below(folder)) {
+        if (!ours.contains(file)) return file;
+    }
+    return "";
 }
 
 }  // namespace
@@ -41,8 +57,14 @@ OutputFolder::OutputFolder(fs::path final, IfPresent if_present) {
     if (fs::exists(status) && !fs::is_directory(status)) {
         throw Error(fmt::format("'{}' is not a folder, so it is not replaced; name another", final.string()));
     }
-    if (fs::exists(status) && !holds_our_results(final_)) {
-        throw Error(fmt::format("'{}' holds no results of thalweg, so --force does not replace it", final.string()));
+    if (fs::exists(status)) {
+        const std::string foreign = first_foreign_file(final_);
+        if (!foreign.empty()) {
+            throw Error(
+                fmt::format("'{}' holds '{}', which thalweg did not write, so --force does not replace it; move "
+                            "it away or name another folder",
+                            final.string(), foreign));
+        }
     }
     partial_ = hidden_neighbour(final_, "partial");
     for (fs::path parent = final_.parent_path(); !parent.empty() && !fs::exists(parent);
@@ -62,11 +84,15 @@ OutputFolder::~OutputFolder() {
 
 void OutputFolder::discard() {
     std::error_code ignored;
-    fs::remove_all(partial_, ignored);
+    // Another thread may be writing still: what it adds meanwhile goes too.
+    for (int attempt = 0; attempt < 100 && fs::exists(partial_, ignored); ++attempt) fs::remove_all(partial_, ignored);
     for (const fs::path& parent : created_parents_) fs::remove(parent, ignored);
 }
 
 void OutputFolder::commit() {
+    std::string list;
+    for (const std::string& file : files_below(partial_)) list += file + '\n';
+    write_text(partial_ / list_name, list);
     // The old folder steps aside first: a folder that is not empty cannot be replaced in one rename.
     const fs::path aside = hidden_neighbour(final_, "replaced");
     std::error_code problem;

@@ -90,7 +90,7 @@ class Reader {
             const std::string name = prefix + std::string(key.str());
             if (const toml::table* inner = node.as_table(); inner != nullptr && is_section(name)) {
                 refuse_unknown(*inner, name + ".");
-            } else if (!known_.contains(name)) {
+            } else if (!known_.contains(name) || key.str().find('.') != std::string_view::npos) {
                 throw Error(fmt::format("unknown key '{}'; did you mean '{}'?", name, nearest(name)));
             }
         }
@@ -102,9 +102,15 @@ class Reader {
     }
 
     std::string nearest(const std::string& name) const {
-        return *std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
-            return edit_distance(name, a) < edit_distance(name, b);
-        });
+        // A key without its section is meant for one of that name in any section.
+        const bool bare = name.find('.') == std::string::npos;
+        const auto distance = [&](const std::string& key) {
+            const std::size_t dot = key.rfind('.');
+            const std::size_t whole = edit_distance(name, key);
+            return bare && dot != std::string::npos ? std::min(whole, edit_distance(name, key.substr(dot + 1))) : whole;
+        };
+        return *std::min_element(known_.begin(), known_.end(),
+                                 [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
     }
 
     template <class T>
@@ -154,7 +160,7 @@ class Reader {
 
     void read(const Field& field, const toml::node& node, std::string& member) const {
         const auto text = node.value<std::string>();
-        if (!text) throw Error(fmt::format("{} must be a word in quotes, not {}", field.key, quoted(node)));
+        if (!text) throw Error(fmt::format("{} must be text in quotes, not {}", field.key, quoted(node)));
         member = *text;
     }
 
@@ -299,7 +305,7 @@ std::string to_toml(const Experiment& experiment) {
         using T = std::remove_cvref_t<decltype(member)>;
         if constexpr (is_optional<T>::value) {
             if (member) line(field, shown(*member));
-        } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+        } else if constexpr (std::is_same_v<T, std::vector<double>> || std::is_same_v<T, std::string>) {
             if (!member.empty()) line(field, shown(member));
         } else {
             line(field, shown(member));
@@ -318,7 +324,7 @@ std::string experiment_reference() {
             if constexpr (std::is_enum_v<typename T::value_type>) value = alternatives<typename T::value_type>();
         } else if constexpr (std::is_enum_v<T>) {
             value = fmt::format("{}; default \"{}\"", alternatives<T>(), word_of(member));
-        } else if constexpr (!std::is_same_v<T, std::vector<double>>) {
+        } else if constexpr (std::is_arithmetic_v<T>) {
             value = fmt::format("default {}", shown(member));
         }
         text +=

@@ -111,8 +111,24 @@ void explain_nulls(const Statistics& s, std::vector<std::string>& notes) {
         notes.push_back(
             "channels: no catchment of at least the channel threshold lies wholly within the data, so there are no "
             "network statistics; lower --channel-area-m2, or use --keep-edge-basins to count cut catchments too");
-    } else if (s.channels.max_strahler < 2) {
-        notes.push_back("horton: the ratios need at least two Strahler orders");
+    } else if (s.channels.max_strahler < 3) {
+        notes.push_back(s.channels.max_strahler < 2 ? "horton: the ratios need at least two Strahler orders"
+                                                    : "horton: the ratios rest on two Strahler orders only");
+    }
+    if (s.channels.share_used < 0.5) {
+        notes.push_back(fmt::format(
+            "channels: only {:.0f} % of the channel cells lie in complete catchments and are used (also in "
+            "network.gpkg "
+            "and the rasters of orders); the edge of the data and holes in it cut the rest, which --keep-edge-basins "
+            "counts too",
+            100 * s.channels.share_used));
+    }
+    if (s.basins.empty()) notes.push_back("horton, strahler: there are no streams");
+    if (s.channels.total_length_m == 0) notes.push_back("channels: without links there is no drainage density");
+    for (const BasinStatistics& basin : s.basins) {
+        if (std::isfinite(basin.hypsometric_integral)) continue;
+        notes.push_back("basins: a basin without relief has no hypsometric integral");
+        break;
     }
     if (s.slope_area.bins.size() < 3) {
         notes.push_back("slope_area: fewer than three bins of drainage area, so no line was fitted");

@@ -14,6 +14,17 @@ ResultKind kind_of(const std::filesystem::path& path) {
     throw Error(fmt::format("'{}' is neither a DEM nor the folder of an analyze or simulate run", path.string()));
 }
 
+void refuse_dem_options(const std::filesystem::path& folder, const io::ReadOptions& read,
+                        const MeasureOptions& measure) {
+    const bool asked =
+        read.nodata || !read.crs.empty() || measure.channel_area_m2 || measure.edge_basins == terrain::EdgeBasins::keep;
+    if (!asked) return;
+    throw Error(
+        fmt::format("'{}' was measured before: --channel-area-m2, --keep-edge-basins, --crs and --nodata apply "
+                    "to DEMs; give the DEM, or analyze it anew",
+                    folder.string()));
+}
+
 const std::vector<double>& numbers_of(const Table& table, const std::string& column) {
     for (const Column& c : table.columns) {
         if (c.name != column) continue;

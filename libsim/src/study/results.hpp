@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "thalweg/core/table.hpp"
+#include "thalweg/io/raster_file.hpp"
+#include "thalweg/study/measure.hpp"
 
 namespace thalweg::study {
 
@@ -14,6 +16,10 @@ enum class ResultKind { file, analyzed, simulated };
 /// What a path names: a file (a DEM), or the folder of an analyze or a simulate run.
 /// Throws Error for anything else.
 ResultKind kind_of(const std::filesystem::path&);
+
+/// Throws Error if anything is asked for that only holds while a DEM is read and measured: the folder was measured
+/// before.
+void refuse_dem_options(const std::filesystem::path& folder, const io::ReadOptions&, const MeasureOptions&);
 
 /// A column of numbers. Throws Error where the table has none of that name.
 const std::vector<double>& numbers_of(const Table&, const std::string& column);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "study/report_json.hpp"
 #include "thalweg/core/error.hpp"
@@ -44,6 +45,35 @@ Experiment fitted_experiment(const Experiment& study, const fs::path& dem, const
     return e;
 }
 
+/// 0.1 % of the catchment as for any DEM, but at least 50 cells: fewer are hillslope on most DEMs.
+double catchment_channel_area(const Raster& raster) {
+    constexpr double smallest_cells = 50;
+    const double area = data_area(raster);
+    const auto cells =
+        std::count_if(raster.values.begin(), raster.values.end(), [](double z) { return !std::isnan(z); });
+    return default_channel_area(std::max(area, 1000 * smallest_cells * area / static_cast<double>(cells)));
+}
+
+/// What the study's own experiment.toml says: the uplift that is simulated is the study's.
+Experiment resolved(Experiment e) {
+    e.uplift.rate_m_per_yr = *e.study.uplift_m_per_yr;
+    return e;
+}
+
+/// Relief of the synthetic landscape over that of the real one, told where it is far from 1.
+void warn_of_relief(const fs::path& folder, const Messages& messages) {
+    const auto relief = [&](const char* step) {
+        const Json input = read_json(folder / step / "summary.json").at("input");
+        return input.at("elevation_max_m").get<double>() - input.at("elevation_min_m").get<double>();
+    };
+    const double real = relief("basin"), synthetic = relief("synthetic");
+    if (synthetic < 1.5 * real && real < 1.5 * synthetic) return;
+    messages.warning(
+        fmt::format("the synthetic relief is {:.0f} m, the real one {:.0f} m: the fitted law does not carry "
+                    "over to the whole catchment; see the range of areas and the errors of the fit",
+                    synthetic, real));
+}
+
 FitOptions fit_options(const Experiment& e) {
     FitOptions options;
     options.fit.n = e.river.n;
@@ -54,11 +84,13 @@ FitOptions fit_options(const Experiment& e) {
     return options;
 }
 
-/// Relative path and checksum of every file of the study, in order of the path.
+/// Relative path and checksum of every file of the study, in order of the path; not of those that hold seconds.
 Json checksums(const fs::path& folder) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        if (entry.is_regular_file()) files.push_back(fs::relative(entry.path(), folder));
+        const std::string name = fs::relative(entry.path(), folder).generic_string();
+        const bool timed = name == "simulate/summary.json" || name == "simulate/history.csv";
+        if (entry.is_regular_file() && !timed) files.push_back(fs::relative(entry.path(), folder));
     }
     std::sort(files.begin(), files.end());
     Json list = Json::array();
@@ -117,16 +149,16 @@ std::string run_study(const Experiment& e, Figures figures, const fs::path& fold
         throw Error("study.uplift_m_per_yr is needed: slopes alone tell only k/u, and a simulation needs both");
     }
     const auto start = std::chrono::steady_clock::now();
-    write_text(folder / "experiment.toml", to_toml(e));
+    write_text(folder / "experiment.toml", to_toml(resolved(e)));
     MeasureOptions options;
     options.channel_area_m2 = e.study.channel_area_m2;
     const fs::path dem_file = dem_of(e, folder, messages);
-    const NamedRaster dem = read_dem(dem_file, {}, messages);
-    if (!options.channel_area_m2) options.channel_area_m2 = default_channel_area(data_area(dem.raster));
+    const NamedRaster dem = read_dem(dem_file, {.nodata = e.study.nodata, .crs = e.study.crs}, messages);
     analyze(dem, options, step_folder(folder, "measure"), messages);
 
     const Catchment catchment = largest_complete_catchment(dem.raster, options);
     options.catchment_outlet = catchment.outlet;
+    if (!options.channel_area_m2) options.channel_area_m2 = catchment_channel_area(catchment.raster);
     NamedRaster basin{catchment.raster, dem.file, dem.sha256, dem.crs_name, {}, dem.origin};
     analyze(basin, options, step_folder(folder, "basin"), messages);
 
@@ -134,10 +166,11 @@ std::string run_study(const Experiment& e, Figures figures, const fs::path& fold
     simulate(fitted_experiment(e, fs::relative(dem_file, folder), fitted.fit), catchment,
              step_folder(folder, "simulate"), messages);
 
-    const NamedRaster synthetic = read_dem(folder / "simulate/elevation.tif", {}, messages);
+    const NamedRaster synthetic = read_dem(folder / "simulate/elevation.tif", {}, {});
     analyze(synthetic, options, step_folder(folder, "synthetic"), messages);
     compare(folder / "basin", folder / "synthetic", {}, step_folder(folder, "compare"), messages);
 
+    warn_of_relief(folder, messages);
     Json manifest = manifest_json(e, dem, folder);
     write_text(folder / "manifest.json", text_of(manifest));
     if (figures == Figures::draw) draw_all(folder, messages);

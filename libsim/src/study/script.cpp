@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <atomic>
 #include <cstdlib>
 
 #include "thalweg/core/error.hpp"
@@ -19,6 +20,9 @@ namespace thalweg::study {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Process group of the script that is under way, 0 for none: the one thing a stopped program must know of it.
+std::atomic<pid_t> running{0};
 
 std::string read_all(int descriptor) {
     std::string text;
@@ -62,7 +66,8 @@ pid_t start(const std::vector<std::string>& command, int error_end) {
     sigset_t no_signals;
     sigemptyset(&no_signals);
     posix_spawnattr_setsigmask(&attributes, &no_signals);
-    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+    posix_spawnattr_setpgroup(&attributes, 0);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETPGROUP);
     std::vector<char*> arguments = as_arguments(command);
     pid_t child = 0;
     const int problem = ::posix_spawn(&child, arguments[0], &actions, &attributes, arguments.data(), environ);
@@ -86,6 +91,7 @@ ScriptResult run_script(const fs::path& script, const std::vector<std::string>& 
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) return {-1, "no pipe"};
     const pid_t child = start(command_line(script, words), ends[1]);
+    running = child;
     ::close(ends[1]);
     ScriptResult result{-1, child != 0 ? last_line(read_all(ends[0])) : "python does not start"};
     ::close(ends[0]);
@@ -93,7 +99,13 @@ ScriptResult run_script(const fs::path& script, const std::vector<std::string>& 
     if (child != 0 && ::waitpid(child, &status, 0) == child && WIFEXITED(status)) {
         result.exit_code = WEXITSTATUS(status);
     }
+    running = 0;
     return result;
+}
+
+void stop_script() {
+    const pid_t group = running;
+    if (group > 0) ::kill(-group, SIGKILL);
 }
 
 void become_script(const fs::path& script, const std::vector<std::string>& words) {

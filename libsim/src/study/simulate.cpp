@@ -224,7 +224,7 @@ void write_results(const Heightfield& h, const Finished& f, const Outcome& o, co
     const Statistics& s = f.statistics;
     auto outlines = io::cell_outlines(e, h.basin_of, static_cast<Index>(s.basins.size()));
     io::write_geopackage(folder / "network.gpkg",
-                         {links_table(s.network, position), junctions_table(s.network, position),
+                         {links_table(s.network, position), junctions_table(s, position),
                           basins_table(s, position, std::move(outlines))},
                          e.placement.crs_wkt);
     io::write_csv(folder / "slope_area_nodes.csv", node_table(f));
@@ -266,11 +266,12 @@ TerrainInput input_of(const Domain& domain, const Finished& f) {
 }
 
 Json summary_json(const Domain& domain, const Outcome& o, const Finished& f, const PositionOf& position) {
-    std::vector<std::string> notes;
+    std::vector<std::string> notes = domain.warnings;
     const TerrainInput input = input_of(domain, f);
     if (input.rows == 0) notes.push_back("input: a triangulated mesh has no rows, columns or cell size");
     notes.push_back("input: a simulated terrain is no file and has no checksum");
     notes.push_back("conditioning: a simulated terrain drains over its passes as it is");
+    if (!o.converged) notes.push_back("converged: the steps were used up before the landscape was steady");
     if (std::isnan(o.time_yr)) notes.push_back("time_yr and rates: undefined for the steady solver");
     Json summary{{"nodes", input.valid_cells},
                  {"steps", o.steps},
@@ -310,6 +311,10 @@ std::string run(const Topology& topology, const Experiment& e, Domain& domain, d
     write_results(h, finished, outcome, position, folder);
     write_text(folder / "experiment.toml", to_toml(e));
     Json summary = summary_json(domain, outcome, finished, position);
+    if (!outcome.converged && e.time.convergence > 0) {
+        messages.warning(fmt::format("not steady after {} steps: a fit of k and m to this landscape assumes that it is",
+                                     outcome.steps));
+    }
     const double output_seconds = writing.seconds();
     summary["seconds"] = {{"mesh", mesh_seconds},
                           {"simulate", simulate_seconds},

@@ -21,27 +21,18 @@ auto column_of(const std::vector<Row>& rows, Get get) {
     return values;
 }
 
-/// Nodes where links begin or end, with what meets there.
+/// What meets at the nodes where links begin or end.
 struct Meeting {
     Index inflows = 0;
     Index downstream_link = none;
-    Index strahler = 0, shreve = 0;
 };
 
 std::map<Index, Meeting> meetings(const channel::StreamNetwork& network) {
     std::map<Index, Meeting> all;
     for (Index link = 0; link < network.size(); ++link) {
         const auto nodes = network.nodes_of(link);
-        Meeting& below = all[nodes.back()];
-        ++below.inflows;
-        if (network.downstream[link] == none) {
-            below.strahler = network.strahler[link];
-            below.shreve = network.shreve[link];
-        }
-        Meeting& above = all[nodes.front()];
-        above.downstream_link = link;
-        above.strahler = network.strahler[link];
-        above.shreve = network.shreve[link];
+        ++all[nodes.back()].inflows;
+        all[nodes.front()].downstream_link = link;
     }
     return all;
 }
@@ -73,17 +64,17 @@ Table links_table(const channel::StreamNetwork& network, const PositionOf& posit
     return table;
 }
 
-Table junctions_table(const channel::StreamNetwork& network, const PositionOf& position) {
+Table junctions_table(const Statistics& s, const PositionOf& position) {
     Wholes inflows, downstream, strahler, shreve;
     Texts kind;
     Table table{.name = "junctions", .columns = {}, .kind = GeometryKind::point, .geometry = {}};
-    for (const auto& [node, meeting] : meetings(network)) {
+    for (const auto& [node, meeting] : meetings(s.network)) {
         const bool mouth = meeting.downstream_link == none;
         kind.push_back(mouth ? "outlet" : meeting.inflows == 0 ? "source" : "junction");
         inflows.push_back(meeting.inflows);
         downstream.push_back(or_minus_one(meeting.downstream_link));
-        strahler.push_back(meeting.strahler);
-        shreve.push_back(meeting.shreve);
+        strahler.push_back(s.strahler_of[node]);
+        shreve.push_back(s.shreve_of[node]);
         table.geometry.push_back({position(node)});
     }
     table.columns = {
@@ -128,7 +119,8 @@ Table slope_area_table(const std::vector<channel::SlopeAreaBin>& bins) {
 Table slope_area_points_table(const std::vector<channel::SlopeAreaPoint>& points) {
     return {.name = "slope_area_points",
             .columns = {{"area_m2", column_of(points, [](const auto& point) { return point.area_m2; })},
-                        {"slope", column_of(points, [](const auto& point) { return point.slope; })}},
+                        {"slope", column_of(points, [](const auto& point) { return point.slope; })},
+                        {"length_m", column_of(points, [](const auto& point) { return point.weight; })}},
             .kind = GeometryKind::no_geometry,
             .geometry = {}};
 }

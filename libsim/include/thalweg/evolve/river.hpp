@@ -30,7 +30,7 @@ struct MassBalance {
     double exported_m3 = 0;  ///< eroded + talus (− deposited): what left through the outlets
     double stored_m3 = 0;    ///< Σ a·(h_end − h_start)
 
-    /// (uplifted − exported − stored) / uplifted; 0 when nothing was uplifted.
+    /// (uplifted − exported − stored) / uplifted; over exported where nothing was uplifted; 0 where nothing moved.
     double relative_residual() const;
 };
 

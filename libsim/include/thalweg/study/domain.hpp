@@ -30,7 +30,8 @@ struct Domain {
     double extent_m = 0;             ///< longer side
     double area_m2 = 0;              ///< of the domain, computed apart from the cells where that is possible
     evolve::Setting setting;
-    evolve::Landscape start;  ///< NaN where a grid's cell lies outside
+    std::vector<std::string> warnings;  ///< of reading a DEM
+    evolve::Landscape start;            ///< NaN where a grid's cell lies outside
 };
 
 /// The domain that an experiment describes. Throws Error where its parameters contradict each other.

@@ -67,7 +67,9 @@ struct Statistics {
     std::vector<channel::SlopeAreaPoint> slope_area_points;
     std::vector<BasinStatistics> basins;
     channel::StreamNetwork network;
-    std::vector<Index> basin_of;  ///< number of each node's basin, `none` outside
+    std::vector<Index> strahler_of;  ///< order of each channel node, 0 elsewhere
+    std::vector<Index> shreve_of;    ///< magnitude of each channel node, 0 elsewhere
+    std::vector<Index> basin_of;     ///< number of each node's basin, `none` outside
 };
 
 /// The one pipeline behind analyze, simulate and compare: `slopes` are the slope–area points measured on the terrain in

@@ -11,7 +11,7 @@ enum class IfPresent { refuse, replace };
 
 /// A folder that appears whole or not at all: files are written into a hidden neighbour, which takes the final name in
 /// one rename on `commit`. Without a commit nothing is left behind, and what stood there before is still there. A
-/// folder that holds something else than our results is never replaced.
+/// folder that holds a file that we did not write (as its list, .thalweg-files, tells) is never replaced.
 class OutputFolder {
   public:
     /// Throws Error if `final` exists and may not be replaced, or its parent cannot be written.

@@ -69,6 +69,8 @@ struct Experiment {
         std::optional<std::filesystem::path> dem;
         std::optional<std::string> source;          ///< of the fetcher's catalogue, instead of a DEM
         std::optional<std::array<double, 4>> bbox;  ///< west, south, east, north (degrees)
+        std::string crs;                            ///< replaces the DEM's own
+        std::optional<double> nodata;               ///< besides what the DEM declares
         std::optional<double> uplift_m_per_yr;
         double uplift_sd_m_per_yr = 0;
         FitMethod method = FitMethod::slope_area;
@@ -106,19 +108,29 @@ template <class AnyExperiment, class Visit>
 void describe(AnyExperiment& e, Visit visit) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     visit(Field{"seed", "", "seed of everything random", 0}, e.seed);
-    visit(Field{"outlets", "", "where water leaves: the whole rim, or the outlet of the DEM's basin"}, e.outlets);
-    visit(Field{"domain.size_m", "m", "width and height of a rectangle", 0, infinity, true}, e.domain.size_m);
-    visit(Field{"domain.nodes", "", "number of nodes (a TIN meets it within 2 %)", 16, 2147483647}, e.domain.nodes);
+    visit(Field{"outlets", "",
+                "where water leaves: the whole rim, or the outlet of the DEM's basin (default where there is a DEM)"},
+          e.outlets);
+    visit(Field{"domain.size_m", "m", "width and height of a rectangle; simulate needs this or domain.dem", 0, infinity,
+                true},
+          e.domain.size_m);
+    visit(Field{"domain.nodes", "",
+                "number of nodes (a TIN meets it within 2 %); a rectangle needs this or domain.spacing_m", 16,
+                2147483647},
+          e.domain.nodes);
     visit(Field{"domain.spacing_m", "m", "distance of nodes, instead of their number", 0, infinity, true},
           e.domain.spacing_m);
-    visit(Field{"domain.mesh", "", "Poisson-disk points and their Delaunay triangles, or square cells"}, e.domain.mesh);
+    visit(Field{"domain.mesh", "",
+                "Poisson-disk points and their Delaunay triangles (default), or square cells (default of a study)"},
+          e.domain.mesh);
     visit(Field{"domain.dem", "", "DEM whose largest complete basin is the domain, instead of a rectangle"},
           e.domain.dem);
     visit(Field{"domain.initial", "", "start from noise, or from the DEM's own heights"}, e.domain.initial);
     visit(Field{"uplift.rate_m_per_yr", "m/yr", "largest uplift rate", 0}, e.uplift.rate_m_per_yr);
     visit(Field{"uplift.pattern", "", "shape of the uplift over the domain"}, e.uplift.pattern);
-    visit(Field{"river.k", "m^(1-2m)/yr", "erodibility", 0, infinity, true}, e.river.k);
-    visit(Field{"river.m", "", "exponent of the drainage area", 0, 5}, e.river.m);
+    visit(Field{"river.k", "m^(1-2m)/yr", "erodibility; simulate needs it, a study fits it", 0, infinity, true},
+          e.river.k);
+    visit(Field{"river.m", "", "exponent of the drainage area; simulate needs it, a study fits it", 0, 5}, e.river.m);
     visit(Field{"river.n", "", "exponent of the slope", 0.3, 5}, e.river.n);
     visit(Field{"river.receiver", "", "neighbour that takes the water"}, e.river.receiver);
     visit(Field{"initial.noise", "", "roughness of the initial surface"}, e.initial.noise);
@@ -130,20 +142,25 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"time.max_steps", "", "most steps (or sweeps of the steady solver)", 1, 1e9}, e.time.max_steps);
     visit(Field{"time.convergence", "", "stop when the mean rate is below this share of the mean uplift; 0: never", 0},
           e.time.convergence);
-    visit(Field{"output.resolution", "", "cells along the longer side of the heightfield", 2, 100000},
+    visit(Field{"output.resolution", "", "cells along the longer side of a TIN's heightfield; default 512", 2, 100000},
           e.output.resolution);
     visit(Field{"output.interpolation", "", "how a TIN becomes a heightfield"}, e.output.interpolation);
-    visit(Field{"study.dem", "", "the DEM to be explained"}, e.study.dem);
+    visit(Field{"study.dem", "", "the DEM to be explained; a study needs it or a source"}, e.study.dem);
     visit(Field{"study.source", "", "where to fetch the DEM from, instead of study.dem (thalweg fetch --help)"},
           e.study.source);
     visit(Field{"study.bbox", "degrees", "west, south, east and north edge of what is fetched", -180, 180},
           e.study.bbox);
-    visit(Field{"study.uplift_m_per_yr", "m/yr", "uplift rate of the real landscape (k cannot be told without)", 0,
-                infinity, true},
+    visit(Field{"study.crs", "", "coordinate system to use instead of the DEM's, e.g. EPSG:32611"}, e.study.crs);
+    visit(Field{"study.nodata", "m", "value to be taken as no data, besides what the DEM declares"}, e.study.nodata);
+    visit(Field{"study.uplift_m_per_yr", "m/yr",
+                "uplift rate of the real landscape (k cannot be told without); a study needs it", 0, infinity, true},
           e.study.uplift_m_per_yr);
     visit(Field{"study.uplift_sd_m_per_yr", "m/yr", "standard deviation of that rate", 0}, e.study.uplift_sd_m_per_yr);
     visit(Field{"study.method", "", "what is matched"}, e.study.method);
-    visit(Field{"study.channel_area_m2", "m2", "drainage area where channels begin", 0, infinity, true},
+    visit(Field{"study.channel_area_m2", "m2",
+                "drainage area where channels begin; default: 0.1 % of the studied basin, at least 50 cells, rounded "
+                "to 1-2-5",
+                0, infinity, true},
           e.study.channel_area_m2);
     visit(Field{"study.area_min_m2", "m2", "smallest drainage area in the fit", 0}, e.study.area_min_m2);
     visit(Field{"study.area_max_m2", "m2", "largest drainage area in the fit", 0, infinity, true}, e.study.area_max_m2);

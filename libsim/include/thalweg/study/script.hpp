@@ -20,6 +20,9 @@ struct ScriptResult {
 /// Runs a script with Debian's Python (THALWEG_PYTHON names another) and waits for it. It hears signals.
 ScriptResult run_script(const std::filesystem::path& script, const std::vector<std::string>& words);
 
+/// Ends a script that is under way, for a program that is being stopped. May be called from any thread.
+void stop_script();
+
 /// Becomes the script: its output, exit code and signals are this program's. Returns only if Python cannot be started.
 void become_script(const std::filesystem::path& script, const std::vector<std::string>& words);
 

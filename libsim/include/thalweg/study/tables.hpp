@@ -17,7 +17,7 @@ PositionOf positions(const Raster&);
 
 /// Layers `links` (lines along the flow), `junctions` (points; outlets and sources too) of a measured network.
 Table links_table(const channel::StreamNetwork&, const PositionOf&);
-Table junctions_table(const channel::StreamNetwork&, const PositionOf&);
+Table junctions_table(const Statistics&, const PositionOf&);
 
 /// Layer `basins`: one polygon per basin of the statistics; `outlines[i]` belongs to basin i.
 Table basins_table(const Statistics&, const PositionOf&, std::vector<Polygon> outlines);

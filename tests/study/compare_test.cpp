@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Comparisons of curves drawn by hand, whose distances were computed on paper.
+#include "thalweg/study/compare.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "support/temp_folder.hpp"
+#include "support/terrains.hpp"
+
+using namespace thalweg;
+using namespace thalweg::study;
+using test::error_of;
+using test::TempFolder;
+using Json = nlohmann::json;
+
+namespace {
+
+Json ratio(double regression) { return {{"regression", regression}, {"mean_ratio", 17.0}}; }
+
+Json bin(double log_area, double log_slope) {
+    return {{"area_m2", std::pow(10, log_area)}, {"slope", std::pow(10, log_slope)}, {"slope_se", 0.01}, {"count", 9}};
+}
+
+/// The summary of an analyze run: slope falls from 10^-1 at 10^4 m² to 10^-2 at 10^6 m², the hypsometric curve is the
+/// diagonal.
+Json drawn_summary() {
+    return {{"input", {{"elevation_min_m", 100.0}, {"elevation_max_m", 300.0}}},
+            {"channels", {{"threshold_area_m2", 5000.0}}},
+            {"strahler", Json::array()},
+            {"hypsometry", {{"integral", 0.5}, {"relative_height", {0, 0.5, 1}}, {"relative_area", {1, 0.5, 0}}}},
+            {"horton", {{"RB", ratio(4)}, {"RL", ratio(2)}, {"RA", ratio(5)}, {"RS", ratio(1.5)}}},
+            {"slope_area", {{"theta", 0.5}, {"bins", {bin(4, -1), bin(6, -2)}}}},
+            {"notes", Json::array()}};
+}
+
+std::filesystem::path folder_of(const TempFolder& temp, const std::string& name, const Json& summary) {
+    std::filesystem::create_directories(temp / name);
+    temp.text(name + "/summary.json", summary.dump());
+    return temp / name;
+}
+
+Json compared(const TempFolder& temp, const std::filesystem::path& a, const std::filesystem::path& b,
+              std::optional<double> channel_area_m2 = {}) {
+    CompareOptions options;
+    options.measure.channel_area_m2 = channel_area_m2;
+    std::filesystem::create_directories(temp / "out");
+    return Json::parse(compare(a, b, options, temp / "out", {}));
+}
+
+double distance(const Json& comparison, const std::string& name) {
+    for (const Json& aspect : comparison.at("aspects")) {
+        if (aspect.at("name") == name && aspect.at("distance").is_number()) return aspect.at("distance");
+    }
+    return std::nan("");
+}
+
+/// A square DEM of cells of 10 m that falls to the south.
+std::filesystem::path slope_of(const TempFolder& temp, const std::string& name, Index size) {
+    const auto t = support::terrain_of(name, size, size, [](Index r, Index c) { return 1000.0 - 3.0 * r + 0.1 * c; });
+    io::write_raster(temp / name, plane_grid(size, size, 10, 10),
+                     {.west = 5e5, .north = 4e6, .cell_width = 10, .cell_height = 10, .crs_wkt = ""}, t.elevation_m, {});
+    return temp / name;
+}
+
+}  // namespace
+
+TEST_CASE("The slope-area distance is the root mean square over the areas both curves have, in dex") {
+    const TempFolder temp;
+    Json other = drawn_summary();
+    // At 10^5 m² the first curve lies at -1.5, this one at -1.1; at 10^6 m² at -2 and -1.9. Elsewhere only one has values.
+    other["slope_area"] = {{"theta", 0.8}, {"bins", {bin(5, -1.1), bin(7, -2.7)}}};
+    const auto a = folder_of(temp, "a", drawn_summary()), b = folder_of(temp, "b", other);
+    const Json ab = compared(temp, a, b);
+    CHECK(distance(ab, "slope_area") == Approx(std::sqrt((0.4 * 0.4 + 0.1 * 0.1) / 2)).epsilon(1e-12));
+    CHECK(distance(compared(temp, b, a), "slope_area") == Approx(distance(ab, "slope_area")).epsilon(1e-12));
+    CHECK(ab["aspects"][0]["a"] == 0.5);
+    CHECK(ab["aspects"][0]["b"] == 0.8);
+    CHECK(distance(ab, "hypsometry") == 0);
+    CHECK(distance(ab, "horton") == 0);
+}
+
+TEST_CASE("Curves without an area in common have no distance, and a note says so") {
+    const TempFolder temp;
+    Json other = drawn_summary();
+    other["slope_area"]["bins"] = {bin(7, -1), bin(8, -2)};
+    const Json ab = compared(temp, folder_of(temp, "a", drawn_summary()), folder_of(temp, "b", other));
+    CHECK(std::isnan(distance(ab, "slope_area")));
+    CHECK(ab["notes"].dump().find("slope_area") != std::string::npos);
+}
+
+TEST_CASE("The hypsometric distance is the whole area between the curves, also where they cross") {
+    const TempFolder temp;
+    const auto a = folder_of(temp, "a", drawn_summary());
+    Json bent = drawn_summary();
+    bent["hypsometry"]["relative_area"] = {1, 0.2, 0};  // a triangle of height 0.3 over the whole width
+    CHECK(distance(compared(temp, a, folder_of(temp, "b", bent)), "hypsometry") == Approx(0.15).epsilon(1e-9));
+    Json crossing = drawn_summary();
+    crossing["hypsometry"]["relative_height"] = {0, 0.25, 0.5, 0.75, 1};  // 0.2 below, then 0.2 above
+    crossing["hypsometry"]["relative_area"] = {1, 0.55, 0.5, 0.45, 0};
+    CHECK(distance(compared(temp, folder_of(temp, "c", crossing), a), "hypsometry") == Approx(0.1).epsilon(1e-9));
+}
+
+TEST_CASE("The Horton distance takes all four ratios by regression, or those that both sides have") {
+    const TempFolder temp;
+    const auto a = folder_of(temp, "a", drawn_summary());
+    Json other = drawn_summary();
+    other["horton"] = {{"RB", ratio(4 * std::exp(0.1))},
+                       {"RL", ratio(2 * std::exp(-0.2))},
+                       {"RA", ratio(5 * std::exp(0.3))},
+                       {"RS", ratio(1.5 * std::exp(-0.4))}};
+    CHECK(distance(compared(temp, a, folder_of(temp, "b", other)), "horton") ==
+          Approx(std::sqrt((0.01 + 0.04 + 0.09 + 0.16) / 4)).epsilon(1e-12));
+    other["horton"]["RS"]["regression"] = nullptr;
+    CHECK(distance(compared(temp, folder_of(temp, "b", other), a), "horton") ==
+          Approx(std::sqrt((0.01 + 0.04 + 0.09) / 3)).epsilon(1e-12));
+}
+
+TEST_CASE("The relief distance is the logarithm of the ratio of the reliefs") {
+    const TempFolder temp;
+    Json other = drawn_summary();
+    other["input"] = {{"elevation_min_m", 50.0}, {"elevation_max_m", 150.0}};
+    const auto a = folder_of(temp, "a", drawn_summary()), b = folder_of(temp, "b", other);
+    CHECK(distance(compared(temp, a, b), "relief") == Approx(std::log(2.0)).epsilon(1e-12));
+    CHECK(distance(compared(temp, b, a), "relief") == Approx(std::log(2.0)).epsilon(1e-12));
+}
+
+TEST_CASE("Two DEMs are measured with the larger of their default thresholds, or with the user's") {
+    const TempFolder temp;
+    // 9e4 m² would have 100 m², 3.6e5 m² has 500 m².
+    const auto small = slope_of(temp, "small.tif", 30), large = slope_of(temp, "large.tif", 60);
+    for (const Json& comparison : {compared(temp, small, large), compared(temp, large, small)}) {
+        CHECK(comparison["channel_threshold_area_m2"] == 500.0);
+        CHECK(comparison["a"]["channels"]["threshold_area_m2"] == 500.0);
+        CHECK(comparison["b"]["channels"]["threshold_area_m2"] == 500.0);
+    }
+    const Json asked = compared(temp, small, large, 250);
+    CHECK(asked["channel_threshold_area_m2"] == 250.0);
+    CHECK(asked["a"]["channels"]["threshold_area_m2"] == 250.0);
+    CHECK(asked["b"]["channels"]["threshold_area_m2"] == 250.0);
+}
+
+TEST_CASE("A side measured before sets the threshold of the other, and two that differ are refused") {
+    const TempFolder temp;
+    const auto measured = folder_of(temp, "a", drawn_summary());
+    const auto dem = slope_of(temp, "dem.tif", 60);
+    const Json comparison = compared(temp, dem, measured);
+    CHECK(comparison["channel_threshold_area_m2"] == 5000.0);
+    CHECK(comparison["a"]["channels"]["threshold_area_m2"] == 5000.0);
+    CHECK(compared(temp, measured, dem, 5000)["channel_threshold_area_m2"] == 5000.0);
+    Json other = drawn_summary();
+    other["channels"]["threshold_area_m2"] = 1000.0;
+    const auto finer = folder_of(temp, "b", other);
+    CHECK(error_of([&] { compared(temp, measured, finer); }).find("one ruler") != std::string::npos);
+    CHECK(error_of([&] { compared(temp, measured, dem, 200); }).find("one ruler") != std::string::npos);
+}

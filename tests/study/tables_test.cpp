@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/tables.hpp"
+
+#include <catch2/catch.hpp>
+
+#include "support/flow_trees.hpp"
+
+using namespace thalweg;
+using namespace thalweg::study;
+
+namespace {
+
+using Doubles = std::vector<double>;
+using Wholes = std::vector<std::int64_t>;
+using Texts = std::vector<std::string>;
+
+template <class Values>
+Values column(const Table& table, const std::string& name) {
+    for (const Column& c : table.columns) {
+        if (c.name == name) return std::get<Values>(c.values);
+    }
+    throw std::out_of_range(name);
+}
+
+Point drawn_position(Index node) { return {100.0 + node, 200.0 - 2.0 * node}; }
+
+/// Links of 5 m between nodes, heights in brackets:
+///
+///   6 (36) - 5 (33)
+///                  \.
+///   4 (70) --------- 3 (30) ---- 1 (10) ---- 0 (0) mouth
+///                               /
+///                     2 (15) --
+Statistics drawn_statistics() {
+    const terrain::FlowGraph graph = support::graph_of({none, 0, 1, 1, 3, 3, 5}, 5);
+    const std::vector<std::uint8_t> channel(7, 1);
+    Statistics s{};
+    s.strahler_of = channel::strahler_orders(graph, channel);
+    s.shreve_of = channel::shreve_magnitudes(graph, channel);
+    s.network = channel::stream_network(graph, channel, support::upstream_counts(graph),
+                                        Doubles{0, 10, 15, 30, 70, 33, 36});
+    return s;
+}
+
+}  // namespace
+
+TEST_CASE("The table of links holds every link with its own numbers") {
+    const Table links = links_table(drawn_statistics().network, drawn_position);
+    CHECK(links.kind == GeometryKind::line);
+    // 1-0, 2-1, 3-1, 4-3, 6-5-3
+    CHECK(column<Wholes>(links, "id") == Wholes{0, 1, 2, 3, 4});
+    CHECK(column<Wholes>(links, "downstream") == Wholes{-1, 0, 0, 2, 2});
+    CHECK(column<Wholes>(links, "strahler") == Wholes{2, 1, 2, 1, 1});
+    CHECK(column<Wholes>(links, "shreve") == Wholes{3, 1, 2, 1, 1});
+    CHECK(column<Doubles>(links, "length_m") == Doubles{5, 5, 5, 5, 10});
+    CHECK(column<Doubles>(links, "drop_m") == Doubles{10, 5, 20, 40, 6});
+    CHECK(column<Doubles>(links, "slope") == Doubles{2, 1, 4, 8, 0.6});
+    CHECK(column<Doubles>(links, "area_m2") == Doubles{7, 1, 4, 1, 2});
+    REQUIRE(links.geometry[4].size() == 3);
+    CHECK(links.geometry[4][0].x == 106);
+    CHECK(links.geometry[4][1].y == 190);
+    CHECK(links.geometry[4][2].x == 103);
+}
+
+TEST_CASE("The table of junctions tells sources, junctions and outlets apart") {
+    const Table junctions = junctions_table(drawn_statistics(), drawn_position);
+    CHECK(junctions.kind == GeometryKind::point);
+    // nodes 0, 1, 2, 3, 4, 6; node 5 lies inside a link
+    CHECK(column<Texts>(junctions, "kind") == Texts{"outlet", "junction", "source", "junction", "source", "source"});
+    CHECK(column<Wholes>(junctions, "inflows") == Wholes{1, 2, 0, 2, 0, 0});
+    CHECK(column<Wholes>(junctions, "downstream") == Wholes{-1, 0, 1, 2, 3, 4});
+    CHECK(column<Wholes>(junctions, "strahler") == Wholes{2, 2, 1, 2, 1, 1});
+    CHECK(column<Wholes>(junctions, "shreve") == Wholes{3, 3, 1, 2, 1, 1});
+    REQUIRE(junctions.geometry.size() == 6);
+    CHECK(junctions.geometry[5].at(0).x == 106);
+    CHECK(junctions.geometry[5].at(0).y == 188);
+}
+
+TEST_CASE("A mouth where two rivers meet counts both in its order and its magnitude") {
+    const terrain::FlowGraph graph = support::graph_of({none, 0, 0});
+    const std::vector<std::uint8_t> channel(3, 1);
+    Statistics s{};
+    s.strahler_of = channel::strahler_orders(graph, channel);
+    s.shreve_of = channel::shreve_magnitudes(graph, channel);
+    s.network = channel::stream_network(graph, channel, support::upstream_counts(graph), Doubles{0, 1, 2});
+    const Table junctions = junctions_table(s, drawn_position);
+    CHECK(column<Texts>(junctions, "kind") == Texts{"outlet", "source", "source"});
+    CHECK(column<Wholes>(junctions, "inflows") == Wholes{2, 0, 0});
+    CHECK(column<Wholes>(junctions, "strahler") == Wholes{2, 1, 1});
+    CHECK(column<Wholes>(junctions, "shreve") == Wholes{2, 1, 1});
+}
+
+TEST_CASE("The table of basins holds every basin with its outline and its own numbers") {
+    Statistics s{};
+    s.basins = {{.basin = {.outlet = 3, .area_m2 = 900, .complete = true},
+                 .relief_m = 40,
+                 .hypsometric_integral = 0.25,
+                 .max_strahler = 4},
+                {.basin = {.outlet = 8, .area_m2 = 500, .complete = false},
+                 .relief_m = 70,
+                 .hypsometric_integral = 0.75,
+                 .max_strahler = 2}};
+    const Polygon first{{0, 0}, {1, 0}, {1, 1}}, second{{5, 5}, {6, 5}, {6, 6}, {5, 6}};
+    const Table basins = basins_table(s, drawn_position, {first, second});
+    CHECK(basins.kind == GeometryKind::polygon);
+    CHECK(column<Wholes>(basins, "id") == Wholes{0, 1});
+    CHECK(column<Doubles>(basins, "outlet_x") == Doubles{103, 108});
+    CHECK(column<Doubles>(basins, "outlet_y") == Doubles{194, 184});
+    CHECK(column<Doubles>(basins, "area_m2") == Doubles{900, 500});
+    CHECK(column<Wholes>(basins, "complete") == Wholes{1, 0});
+    CHECK(column<Doubles>(basins, "relief_m") == Doubles{40, 70});
+    CHECK(column<Doubles>(basins, "hypsometric_integral") == Doubles{0.25, 0.75});
+    CHECK(column<Wholes>(basins, "max_strahler") == Wholes{4, 2});
+    CHECK(basins.geometry[1].size() == 4);
+}
+
+TEST_CASE("The curves are written with every number in its own column") {
+    const Table bins = slope_area_table({{.area_m2 = 1e4, .slope = 0.1, .slope_se = 0.02, .count = 7}});
+    CHECK(column<Doubles>(bins, "area_m2") == Doubles{1e4});
+    CHECK(column<Doubles>(bins, "slope") == Doubles{0.1});
+    CHECK(column<Doubles>(bins, "slope_se") == Doubles{0.02});
+    CHECK(column<Wholes>(bins, "count") == Wholes{7});
+    const Table points = slope_area_points_table({{.area_m2 = 1e4, .slope = 0.1, .weight = 30}});
+    CHECK(column<Doubles>(points, "area_m2") == Doubles{1e4});
+    CHECK(column<Doubles>(points, "slope") == Doubles{0.1});
+    CHECK(column<Doubles>(points, "length_m") == Doubles{30});
+    terrain::Hypsometry h{};
+    h.relative_height = {0, 0.5, 1};
+    h.relative_area = {1, 0.2, 0};
+    const Table curve = hypsometry_table(h);
+    CHECK(column<Doubles>(curve, "relative_height") == Doubles{0, 0.5, 1});
+    CHECK(column<Doubles>(curve, "relative_area") == Doubles{1, 0.2, 0});
+}
+
+TEST_CASE("Cells of a raster lie at their centres, counted from the north-west") {
+    const Raster raster{plane_grid(3, 4, 10, 20), {.west = 1000, .north = 5000, .cell_width = 10, .cell_height = 20}, {}};
+    const Point p = positions(raster)(2 * 4 + 1);
+    CHECK(p.x == 1015);
+    CHECK(p.y == 4950);
+}
