@@ -46,7 +46,7 @@ def geopackage_words(path):
 def written_words(folder):
     """Word: where it was seen, for all that the study wrote."""
     seen = {}
-    for path in sorted(p for p in folder.rglob("*") if p.is_file()):
+    for path in sorted(p for p in folder.rglob("*") if p.is_file() and not p.name.startswith(".")):
         where = str(path.relative_to(folder))
         words = {path.name}
         if path.suffix == ".json":

@@ -164,7 +164,8 @@ def write_terrain(folder, raster, z, origin, step, crs, cell, threshold):
     write_csv(os.path.join(folder, "slope_area.csv"), **{k: [b[k] for b in table] for k in
                                                          ("area_m2", "slope", "slope_se", "count")})
     points = "slope_area_points.csv" if raster == "filled.tif" else "slope_area_nodes.csv"
-    write_csv(os.path.join(folder, points), area_m2=area, slope=slope, talus_limited=np.zeros(area.size))
+    weight = {"talus_limited": np.zeros(area.size)} if raster == "elevation.tif" else {"length_m": 10 / slope}
+    write_csv(os.path.join(folder, points), area_m2=area, slope=slope, **weight)
     return summary
 
 
@@ -199,6 +200,8 @@ def write_study(folder, z=None, synthetic=None, origin=(-84.3, 36.6), step=1 / 1
                      "elevation_min_m": float(np.nanmin(z)), "elevation_max_m": float(np.nanmax(z)),
                      "elevation_mean_m": float(np.nanmean(z))}
     real["conditioning"] = {"method": "fill", "pits": 12, "cells_changed": 40, "volume_m3": 1.2e6, "flat_cells": 9}
+    remade["input"] = {**real["input"], "file": "elevation.tif", "elevation_min_m": float(np.nanmin(synthetic)),
+                       "elevation_max_m": float(np.nanmax(synthetic)), "elevation_mean_m": float(np.nanmean(synthetic))}
     for step, summary in (("measure", real), ("basin", real), ("synthetic", remade)):
         write_json(os.path.join(folder, step, "summary.json"), summary)
     write_simulation(os.path.join(folder, "simulate"), made, synthetic, valid * cell**2)
@@ -246,7 +249,8 @@ def write_fit(folder, law):
 
 def write_comparison(folder, real, made):
     os.makedirs(folder, exist_ok=True)
-    aspects = [{"name": name, "a": a, "b": b, "distance": d, "scale": None, "verdict": None} for name, a, b, d in
+    aspects = [{"name": name, "a": a, "b": b, "distance": d, "scale": None, "verdict": None,
+                "distance_definition": "root mean square of ln(ratio of a / ratio of b)"} for name, a, b, d in
                (("slope_area", 0.44, 0.45, 0.06), ("hypsometry", 0.41, 0.47, 0.061), ("horton", None, None, 0.2))]
     write_json(os.path.join(folder, "comparison.json"), {
         "aspects": aspects, "a": {"name": "hills.tif", "terrain": real}, "b": {"name": "simulate", "terrain": made},

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The figures and the report on a small made-up study. Run: /usr/bin/python3 -m unittest discover tests/figures"""
+import base64
 import contextlib
 import io
 import json
 import os
+import shutil
 import struct
 import subprocess
 import sys
@@ -21,12 +23,16 @@ import mock_study  # noqa: E402
 
 PROGRAM = os.environ.get("THALWEG_FIGURES", os.path.join(HERE, "..", "..", "tools", "figures", "thalweg_figures.py"))
 sys.path.insert(0, os.path.dirname(os.path.realpath(PROGRAM)))
+import curves  # noqa: E402
 import maps  # noqa: E402
+import report  # noqa: E402
+import sides  # noqa: E402
+import study  # noqa: E402
 import style  # noqa: E402
 import thalweg_figures  # noqa: E402
 
-EXPECTED = {"analyze": ("measure", ("map", "hypsometry", "slope_area", "horton")),
-            "simulate": ("simulate", ("map", "hypsometry", "slope_area", "history")),
+EXPECTED = {"analyze": ("basin", ("map", "hypsometry", "slope_area", "horton")),
+            "simulate": ("simulate", ("map", "hypsometry", "slope_area", "history", "horton")),
             "fit": ("fit", ("slope_area",)), "compare": ("compare", ("slope_area", "hypsometry", "horton"))}
 
 
@@ -46,6 +52,11 @@ def run_apart(*arguments):
 def contents(path):
     with open(path, "rb") as stream:
         return stream.read()
+
+
+def heighten(content):
+    """Twice the relief of the real terrain."""
+    content["input"]["elevation_max_m"] = content["input"]["elevation_min_m"] + 800.0
 
 
 def replace_numbers(value):
@@ -73,32 +84,54 @@ class Links(HTMLParser):
 
 
 class Figures(unittest.TestCase):
-    def setUp(self):
-        self.temporary = tempfile.TemporaryDirectory()
-        self.study = self.temporary.name
-        mock_study.write_study(self.study)
+    @classmethod
+    def setUpClass(cls):
+        """One study, drawn once as the thalweg program has it drawn: the tests read it, or change a copy of it."""
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.study = os.path.join(cls.temporary.name, "drawn")
+        mock_study.write_study(cls.study)
+        cls.undrawn = shutil.copytree(cls.study, os.path.join(cls.temporary.name, "undrawn"))
+        for step, theta in (("basin", 0.4321), ("synthetic", 0.5678)):
+            cls.edit(cls.study, (step, "summary.json"),
+                     lambda content, value=theta: content["slope_area"].update(theta=value))
+        cls.edit(cls.study, ("synthetic", "summary.json"), heighten)
+        cls.edit(cls.study, ("simulate", "summary.json"), lambda content: content["notes"].update(converged="not quite"))
+        cls.drawing = run_apart("study", cls.study)
 
-    def tearDown(self):
-        self.temporary.cleanup()
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
 
-    def path(self, *parts):
-        return os.path.join(self.study, *parts)
+    def changeable(self):
+        """A copy of the study without figures."""
+        folder = tempfile.mkdtemp(dir=self.temporary.name)
+        return shutil.copytree(self.undrawn, folder, dirs_exist_ok=True)
 
-    def succeed(self, *arguments, run=run_here):
-        result = run(*arguments)
-        self.assertEqual((result.returncode, result.stderr, result.stdout), (0, "", ""), arguments)
+    def succeed(self, *arguments):
+        result = run_here(*arguments)
+        self.assertEqual((result.returncode, result.stderr), (0, ""), arguments)
+
+    def page(self):
+        return contents(os.path.join(self.study, "report.html")).decode()
+
+    def assert_says(self, page, *sentences):
+        for sentence in sentences:
+            self.assertTrue(sentence in page, f"the report does not say: {sentence}")
 
     def test_a_study_drawn_at_once_in_another_process_has_the_bytes_of_its_parts_drawn_here(self):
-        self.succeed("study", self.study, run=run_apart)
+        drawing = self.drawing
+        self.assertEqual((drawing.returncode, drawing.stderr, drawing.stdout), (0, "", ""))
         for folder, names in EXPECTED.values():
-            self.assertEqual(sorted(os.listdir(self.path(folder, "figures"))), sorted(f"{n}.png" for n in names))
-            for image in (contents(self.path(folder, "figures", name + ".png")) for name in names):
-                self.assert_is_small_picture(image)
-        files = [self.path("report.html"), *(self.path("measure", "figures", n + ".png") for n in EXPECTED["analyze"][1])]
+            figures = os.path.join(self.study, folder, "figures")
+            self.assertEqual(sorted(os.listdir(figures)), sorted(f"{name}.png" for name in names))
+            for name in names:
+                self.assert_is_small_picture(contents(os.path.join(figures, name + ".png")))
+        files = [os.path.join(self.study, "basin", "figures", name + ".png") for name in EXPECTED["analyze"][1]]
         first = [contents(file) for file in files]
-        self.succeed("analyze", self.path("measure"))
-        self.succeed("report", self.study)
-        self.assertEqual(first, [contents(file) for file in files])
+        self.succeed("analyze", os.path.join(self.study, "basin"))
+        self.assertTrue(first == [contents(file) for file in files])
+        curve = style.svg(curves.hypsometry(study.Study(self.study).sides()))
+        self.assert_says(self.page(), base64.b64encode(curve).decode())
 
     def assert_is_small_picture(self, image):
         width, height = struct.unpack(">II", image[16:24])
@@ -111,41 +144,79 @@ class Figures(unittest.TestCase):
         links = Links()
         links.feed(page)
         self.assertEqual([link[:40] for link in links.loaded if not link.startswith(("data:image/", "#"))], [])
-        self.assertNotIn("script", links.tags)
+        self.assertFalse("script" in links.tags)
         self.assertNotRegex(page.split("</style>")[0], r"@import|url\(")
         self.assertEqual(len(links.alternatives), 6)
         self.assertTrue(all(links.alternatives))
-        self.assertNotIn(self.study, page)
+        self.assertFalse(self.study in page)
 
     def test_the_report_loads_nothing_shows_both_terrains_and_says_why_a_number_is_missing(self):
-        for step, theta in (("basin", 0.4321), ("synthetic", 0.5678)):
-            self.edit((step, "summary.json"), lambda content, value=theta: content["slope_area"].update(theta=value))
-        self.succeed("report", self.study)
-        page = contents(self.path("report.html")).decode()
-        self.assertRegex(page, r"Concavity θ</th><td>0\.4321</td><td>0\.5678</td>")
-        self.assertIn("1.10 × 10<sup>−6</sup>", page)
-        self.assertIn("one DEM cannot tell whether uplift and incision balance", page)
-        self.assertIn("0" * 64, page)
+        page = self.page()
         self.assert_loads_nothing(page)
-        self.assertRegex(page, r"Slope ratio <i>R</i><sub>S</sub></th><td>–<sup>a</sup></td>")
-        self.assertIn("<sup>a</sup> slopes of the highest order are not known", page)
+        self.assert_says(page, "Concavity θ, regression</th><td>0.4321</td><td>0.5678</td>", "1.10 × 10<sup>−6</sup>",
+                         "one DEM cannot tell whether uplift and incision balance", "0" * 64,
+                         "Slope ratio <i>R</i><sub>S</sub></th><td>–<sup>a</sup></td>",
+                         "<sup>a</sup> slopes of the highest order are not known", "ln(ratio of real / ratio of synthetic)")
+
+    def test_the_report_tells_the_relief_of_both_terrains_and_explains_one_that_is_far_off(self):
+        page = self.page()
+        self.assert_says(page, "rises 397 m from its lowest to its highest point, the synthetic one 800 m, 2.0 times",
+                         "The fitted law holds on channels only", "Relief (highest − lowest)</th><td>397</td><td>800</td>")
+        folder = self.changeable()
+        lead = report.header(study.Study(folder), "")
+        self.assert_says(lead, "rises 397 m from its lowest to its highest point, the synthetic one 317 m.")
+        self.assertFalse("holds on channels only" in lead)
+
+    def test_k_is_never_given_without_its_interval(self):
+        self.assert_says(self.page(), "<i>k</i> = 1.10 × 10<sup>−6</sup> m<sup>1−2<i>m</i></sup>/yr (95 %: 7.00 × "
+                         "10<sup>−7</sup> to 1.50 × 10<sup>−6</sup>)")
+
+    def test_reasons_of_empty_values_are_folded_away_and_warnings_are_not(self):
+        notes = self.page().split('id="notes"')[1].split("</section>")[0]
+        shown, folded = notes.split("<details>")
+        self.assertIn("not quite", shown)
+        self.assertNotIn("slopes of the highest order", shown)
+        self.assertIn("slopes of the highest order", folded)
+
+    def test_a_note_on_an_absent_headline_is_a_warning(self):
+        folder = self.changeable()
+        self.edit(folder, ("basin", "summary.json"), lambda content: content.update(
+            slope_area={"theta": None, "bins": []}, notes=["slope_area: fewer than three bins"]))
+        found = {note[2]: note[3] for note in study.Study(folder).notes()}
+        self.assertFalse(found["fewer than three bins"])
+        self.assertTrue(found["one DEM cannot tell whether uplift and incision balance"])
+
+    def test_no_steady_line_is_drawn_where_uplift_varies_and_the_reason_is_told(self):
+        folder = os.path.join(self.changeable(), "simulate")
+        side = sides.from_folder(folder, "simulated", "synthetic")
+        (area, slope), why = sides.theory(folder, side)
+        self.assertEqual(why, "")
+        self.assertAlmostEqual(slope[0] / (100 * area[0]**-0.45), 1)
+        with open(os.path.join(folder, "experiment.toml"), "w", encoding="utf-8") as stream:
+            stream.write(mock_study.EXPERIMENT.replace("[river]", 'pattern = "radial"\n[river]'))
+        line, why = sides.theory(folder, side)
+        self.assertIsNone(line)
+        self.assertIn("uplift (radial)", why)
 
     def test_summaries_without_any_number_survive(self):
+        folder = self.changeable()
         for parts in (("measure", "summary.json"), ("basin", "summary.json"), ("synthetic", "summary.json"),
                       ("simulate", "summary.json"), ("fit", "fit.json"), ("compare", "comparison.json")):
-            content = replace_numbers(json.loads(contents(self.path(*parts))))
-            mock_study.write_json(self.path(*parts), content)
+            path = os.path.join(folder, *parts)
+            mock_study.write_json(path, replace_numbers(json.loads(contents(path))))
         for name in ("hypsometry.csv", "slope_area.csv", "slope_area_points.csv"):
-            os.remove(self.path("measure", name))
-        os.remove(self.path("simulate", "history.csv"))
+            os.remove(os.path.join(folder, "basin", name))
+        os.remove(os.path.join(folder, "simulate", "history.csv"))
         for command in ("fit", "compare"):
-            self.succeed(command, self.path(command))
-        self.succeed("report", self.study)
-        self.assertNotRegex(contents(self.path("report.html")).decode().split("<figure")[0], r"\bnan\b|None")
+            self.succeed(command, os.path.join(folder, command))
+        self.succeed("report", folder)
+        page = contents(os.path.join(folder, "report.html")).decode()
+        self.assertNotRegex(page.split("<figure")[0], r"\bnan\b|None")
 
     def test_a_missing_raster_is_one_line_and_exit_code_1(self):
-        os.remove(self.path("measure", "filled.tif"))
-        for arguments in (("analyze", self.path("measure")), ("report", self.study), ("draw", self.study), ("fit",)):
+        folder = self.changeable()
+        os.remove(os.path.join(folder, "measure", "filled.tif"))
+        for arguments in (("analyze", os.path.join(folder, "measure")), ("report", folder), ("draw", folder), ("fit",)):
             result = run_here(*arguments)
             self.assertEqual(result.returncode, 1, arguments)
             self.assertEqual(len(result.stderr.strip().splitlines()), 1, result.stderr)
@@ -154,17 +225,19 @@ class Figures(unittest.TestCase):
         utm = osr.SpatialReference()
         utm.ImportFromEPSG(32616)
         for name, crs in (("utm", utm), ("plain", None)):
-            folder = self.path(name)
+            folder = os.path.join(self.temporary.name, name)
             summary = mock_study.write_terrain(folder, "filled.tif", mock_study.hills(50, 70), (700e3, 4050e3), 30.0, crs,
                                                30.0, 40)
             mock_study.write_json(os.path.join(folder, "summary.json"), summary)
             image = style.png(maps.single(os.path.join(folder, "filled.tif"), os.path.join(folder, "network.gpkg"))[0], 72)
             self.assertGreater(len(image), 5000)
 
-    def edit(self, parts, change):
-        content = json.loads(contents(self.path(*parts)))
+    @staticmethod
+    def edit(folder, parts, change):
+        path = os.path.join(folder, *parts)
+        content = json.loads(contents(path))
         change(content)
-        mock_study.write_json(self.path(*parts), content)
+        mock_study.write_json(path, content)
 
 
 if __name__ == "__main__":

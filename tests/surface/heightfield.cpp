@@ -149,6 +149,15 @@ TEST_CASE("Values outside a raster smaller than the mesh are left out") {
     visit_centers(raster, [&](Index cell, const Point& p) { CHECK(raster.values[cell] == Approx(p.x)); });
 }
 
+TEST_CASE("Far from the origin, where a cell is a few thousand roundings wide, there are no holes") {
+    Mesh mesh = mesh_of(rectangle(1e-3, 1e-3), 300);
+    for (double& x : mesh.x) x += 5e5;
+    for (double& y : mesh.y) y += 4.2e6;
+    Raster raster = covering_raster(mesh, 500);
+    interpolate_linear(mesh, mesh.x, raster);
+    visit_centers(raster, [&](Index cell, const Point& p) { REQUIRE(std::abs(raster.values[cell] - p.x) < 1e-9); });
+}
+
 TEST_CASE("The nearest node is that of a search over all nodes") {
     for (const auto& [name, outline] : many_outlines()) {
         INFO(name);

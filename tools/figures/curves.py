@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Hypsometric, slope–area, Horton and history plots. Each `draw_…` fills given axes; each other function is a figure."""
+import textwrap
 from dataclasses import dataclass, field
 
 import numpy as np
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
+from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator, NullFormatter, NullLocator
 
 import style
 from data import columns, get
@@ -18,7 +19,7 @@ class Side:
     look: dict
     terrain: dict = field(default_factory=dict)      # keys of the summary
     hypsometry: tuple = ((), ())                     # relative area, relative height
-    cloud: tuple = ((), ())                          # area m², slope
+    cloud: tuple = ((), (), None)                    # area m², slope, length m (None: all count alike)
     bins: tuple = ((), (), ())                       # area m², slope, standard error
 
 
@@ -58,12 +59,20 @@ def draw_hypsometry(axes, sides):
         absent(axes, "no hypsometric curve")
 
 
-def draw_slope_area(axes, side, theory=None, fit=None):
-    """Cloud, bins with their standard errors, and what is known of the law: the given one and the fitted one."""
+def draw_slope_area(axes, side, fit=None, regression=None, theory=None, remark=""):
+    """Cloud, bins with their standard errors, and what is known of the law: fit and regression as (curve, label), the
+    given one as areas and slopes; `remark` stands in the upper right corner."""
     _draw_cloud(axes, side)
     _draw_bins(axes, side)
     if fit is not None:
         draw_fitted_line(axes, fit, side.look["color"])
+    if regression is not None:
+        (area, slope), label = regression
+        axes.plot(area, slope, color=style.INK if fit is None else side.look["color"], linewidth=1.2,
+                  linestyle=(0, (4, 3)), zorder=5, label=label)
+    if remark:
+        axes.text(0.985, 0.985, textwrap.fill(remark, 44), transform=axes.transAxes, ha="right", va="top", fontsize=6.5,
+                  color=style.MUTED, zorder=7)
     if theory is not None:
         axes.plot(theory[0], theory[1], color=style.THEORY, linewidth=1.0, linestyle=(0, (1, 1.2)), zorder=5,
                   label="steady state, (u/k)$^{1/n}$ A$^{−m/n}$")
@@ -77,16 +86,20 @@ def draw_slope_area(axes, side, theory=None, fit=None):
 
 
 def _draw_cloud(axes, side):
-    area, slope = (np.asarray(values, dtype=float) for values in side.cloud)
+    """Dots; where each has its length, their area is in proportion to it, as is their weight in the bins' means."""
+    area, slope = (np.asarray(values, dtype=float) for values in side.cloud[:2])
     usable = (area > 0) & (slope > 0)
-    area, slope = area[usable], slope[usable]
-    if area.size == 0:
+    stride = 1 + np.count_nonzero(usable) // CLOUD_POINTS
+    chosen = np.flatnonzero(usable)[::stride]
+    if chosen.size == 0:
         return
-    stride = 1 + area.size // CLOUD_POINTS
-    shown = area[::stride].size
-    axes.plot(area[::stride], slope[::stride], linestyle="none", marker="o", markersize=1.9 if shown < 3000 else 1.2,
-              markeredgewidth=0, color=side.look["color"], alpha=float(np.clip(600 / shown, 0.10, 0.35)),
-              rasterized=True, zorder=2)
+    opacity = float(np.clip(1500 / chosen.size, 0.2, 0.65))
+    size = 4.4 if chosen.size < 3000 else 1.8
+    if side.cloud[2] is not None:
+        length = np.nan_to_num(np.asarray(side.cloud[2], dtype=float)[chosen])
+        size = np.clip(size * length / (np.mean(length) or 1), 0.8, 60)
+    axes.scatter(area[chosen], slope[chosen], s=size, linewidths=0, color=side.look["color"], alpha=opacity,
+                 rasterized=True, zorder=2)
 
 
 def _draw_bins(axes, side):
@@ -142,13 +155,13 @@ def draw_fitted_line(axes, fit, color):
     axes.plot(area, slope, color=style.INK, linewidth=1.3, zorder=4, label=label)
 
 
-def law_label(theta, error):
-    """The legend's words for S ∝ A^−θ."""
+def law_label(name, theta, error):
+    """The legend's words for S ∝ A^−θ; `name` tells the robust "fit" from the plain "regression"."""
     if theta is None:
-        return "fitted line"
+        return name
     if not error:
-        return f"fit: θ = {theta:.3f}"
-    return f"fit: θ = {theta:.3f} ± " + (f"{error:.3f}" if error >= 0.0005 else "< 0.001")
+        return f"{name}: θ = {theta:.3f}"
+    return f"{name}: θ = {theta:.3f} ± " + (f"{error:.3f}" if error >= 0.0005 else "< 0.001")
 
 
 def summary_line(side):
@@ -158,8 +171,13 @@ def summary_line(side):
     if theta is None or ks is None or area.size < 2:
         return None
     x = np.geomspace(np.nanmin(area), np.nanmax(area), 2)
-    slope = ks * x**-theta
-    return (x, slope, slope, slope), law_label(theta, get(side.terrain, "slope_area.theta_se"))
+    return (x, ks * x**-theta), law_label("regression", theta, get(side.terrain, "slope_area.theta_se"))
+
+
+def fitted_line(fit, table):
+    """The law of fit.json as a curve with its band and label; None when there is none."""
+    curve = fitted_curve(fit, table)
+    return curve and (curve, law_label("fit", fit.get("theta"), fit.get("theta_se")))
 
 
 HORTON = (("streams", "Number of streams", "RB", "$R_B$"), ("mean_length_m", "Mean length (km)", "RL", "$R_L$"),
@@ -180,6 +198,8 @@ def draw_horton(axes, sides, key, label, ratio, symbol):
         top = max(top, int(order.max()))
         number = get(side.terrain, f"horton.{ratio}.regression")
         text = side.label if number is None else f"{side.label}: {symbol} = {number:.2f}"
+        if order.size == 2:
+            text += " (two orders only)"
         axes.plot(order, value, linestyle="none", marker=side.look["marker"], markersize=4.5, markerfacecolor="white",
                   markeredgewidth=1.1, color=side.look["color"], label=text, zorder=3)
         if order.size > 1:
@@ -187,9 +207,10 @@ def draw_horton(axes, sides, key, label, ratio, symbol):
             axes.plot(order, np.exp(np.polyval(line, order)), color=side.look["color"], linewidth=0.9,
                       linestyle=side.look["linestyle"])
     axes.set(yscale="log", xlabel="Strahler order (–)", ylabel=label, xlim=(0.7, top + 0.3))
-    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
-    axes.xaxis.set_minor_locator(MaxNLocator(1))
-    label_decades(axes.yaxis)
+    axes.xaxis.set_major_locator(FixedLocator(range(1, top + 1)))
+    axes.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axes.yaxis.set_minor_locator(NullLocator())
     if axes.lines:
         axes.legend(loc="best")
     else:
@@ -215,15 +236,19 @@ def draw_history(height_axes, rate_axes, history):
              for name, word, line in (("max_rate_m_per_yr", "largest", "-"), ("mean_rate_m_per_yr", "mean", (0, (5, 1.6))))]
     if any(drawn):
         rate_axes.set_yscale("log")
-        rate_axes.legend(loc="best")
+        _legend_above(rate_axes)
     else:
         absent(rate_axes, "no rates of change recorded")
     height_axes.set(ylabel="Elevation (m)", xlabel=label)
     rate_axes.set(ylabel="Rate of change (mm/yr)", xlabel=label)
     if time.size:
-        height_axes.legend(loc="lower right")
+        _legend_above(height_axes)
     else:
         absent(height_axes, "no history recorded")
+
+
+def _legend_above(axes):
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=2, borderaxespad=0.2)
 
 
 def _draw_rate(axes, time, rate, word, line):
@@ -242,19 +267,21 @@ def hypsometry(sides):
     return drawing
 
 
-def slope_area(side, theory=None, fit=None):
+def slope_area(side, fit=None, regression=None, theory=None, remark=""):
     drawing = style.figure(3.6, 4.8)
-    draw_slope_area(drawing.add_subplot(), side, theory, fit)
+    draw_slope_area(drawing.add_subplot(), side, fit, regression, theory, remark)
     return drawing
 
 
-def slope_area_pair(sides, theories=(None, None), fits=(None, None)):
-    """Side by side with shared axes, so that level and slope can be compared by eye."""
+def slope_area_pair(sides, titles, fit=None, theory=None, remark=""):
+    """Side by side with shared axes, so that level and slope can be compared by eye, each with its regression; `fit`
+    belongs to the first, `theory` and `remark` to the second."""
     drawing = style.figure(3.3)
     axes = drawing.subplots(1, 2, sharex=True, sharey=True)
-    for axis, side, theory, fit in zip(axes, sides, theories, fits):
-        draw_slope_area(axis, side, theory, fit)
-        axis.set_title(side.label[:1].upper() + side.label[1:])
+    draw_slope_area(axes[0], sides[0], fit, summary_line(sides[0]))
+    draw_slope_area(axes[1], sides[1], None, summary_line(sides[1]), theory, remark)
+    for axis, title in zip(axes, titles):
+        axis.set_title(title)
     axes[1].set_ylabel("")
     return drawing
 

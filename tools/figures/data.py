@@ -94,7 +94,7 @@ def notes_of(content):
         return [(str(key), _sentence(value)) for key, value in notes.items()]
     found = []
     for note in [notes] if isinstance(notes, str) else notes or []:
-        keyed = re.match(r"([a-z_][\w.]*): (.+)", _sentence(note), re.DOTALL)
+        keyed = re.match(r"([a-z_][\w.]*(?: and \w+)?): (.+)", _sentence(note), re.DOTALL)
         found.append(keyed.groups() if keyed else ("", _sentence(note)))
     return found
 
@@ -116,6 +116,20 @@ def reason(content, path):
         return ""
     named = re.compile(rf"\b{re.escape(last)}\b")
     return next((sentence for _, sentence in notes if named.search(sentence)), "")
+
+
+def absences(content, path):
+    """Paths of the nulls at and below `path`, wherever in the content that lies."""
+    pending, found = [("", content)], []
+    while pending:
+        name, value = pending.pop()
+        if isinstance(value, dict):
+            pending += [(f"{name}.{key}", each) for key, each in value.items()]
+        elif isinstance(value, list):
+            pending += [(name, each) for each in value]
+        elif value is None and f".{path}." in name + ".":
+            found.append(name[1:])
+    return found
 
 
 def terrain_of(summary):

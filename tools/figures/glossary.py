@@ -8,6 +8,14 @@ ENTRIES = (
     ("Concavity θ (–), steepness <i>k</i><sub>s</sub> (m<sup>2θ</sup>)",
      "Exponent and factor of <i>S</i> = <i>k</i><sub>s</sub> <i>A</i><sup>−θ</sup>. Half of the world’s "
      "rivers lie between 0.225 and 0.575.", "Flint, 1974; Gailleton and others, 2021"),
+    ("Regression, fit", "Two lines through the same bins. The regression is plain least squares, made alike on every terrain: "
+     "for comparing. The fit is robust (bins far from the line pull less) and knows <i>u</i> and <i>n</i>: for <i>k</i> and "
+     "<i>m</i>. Their θ differ a little.", "Huber, 1964"),
+    ("Relief (m)", "Highest minus lowest elevation.", ""),
+    ("Receiver", "The lower neighbour that takes all the water of a node.", ""),
+    ("Sweep", "One pass of the steady solver over all nodes: receivers are chosen anew, then every height is set so that "
+     "erosion balances uplift. It is done when no receiver changes.", ""),
+    ("dex", "A difference of decimal logarithms: 0.3 dex is a factor of two.", ""),
     ("Stream power <i>k</i>, <i>m</i>, <i>n</i>",
      "Rock is worn at the rate <i>k</i> <i>A</i><sup><i>m</i></sup> <i>S</i><sup><i>n</i></sup>. Where this balances uplift "
      "<i>u</i>, θ = <i>m</i>/<i>n</i> and <i>k</i><sub>s</sub> = (<i>u</i>/<i>k</i>)<sup>1/<i>n</i></sup>; so slopes and "

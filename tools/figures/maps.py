@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from matplotlib.collections import LineCollection
+from matplotlib.lines import Line2D
 from matplotlib.colors import Normalize
 from matplotlib.cm import ScalarMappable
 from matplotlib.patheffects import withStroke
@@ -20,7 +21,8 @@ gdal.PushErrorHandler("CPLQuietErrorHandler")
 METRES_PER_DEGREE = 111320.0  # on a sphere of the equator's radius: for drawing only, measures come from the ellipsoid
 SUN_ALTITUDE = np.radians(40)
 LEVEL_GROUND = np.sin(SUN_ALTITUDE)  # its brightness
-LONGEST_SIDE = 1300           # cells read at most: more would be thinner than a pixel
+LONGEST_SIDE = 1100           # cells read at most: more would be thinner than a pixel
+KEY_HEIGHT = 0.14             # inches, of the line under a map that explains its lines
 
 
 @dataclass
@@ -205,15 +207,20 @@ def _parts(geometry):
     return parts
 
 
-def legible_order(path, terrain, width_in):
-    """The lowest Strahler order at which rivers lie at least 0.05 inches apart on the map, on average."""
+def river_lengths(path):
+    """Total length of the rivers (m) by Strahler order."""
     layer, source = _layer(path, "links")
     if layer is None:
-        return 1
+        return {}
     lengths = {}
     for feature in source.ExecuteSQL("SELECT strahler, SUM(length_m) AS total FROM links GROUP BY strahler"):
         lengths[int(feature.GetField(0) or 1)] = float(feature.GetField(1) or 0)
     del layer, source
+    return lengths
+
+
+def legible_order(lengths, terrain, width_in):
+    """The lowest Strahler order at which rivers lie at least 0.05 inches apart on the map, on average."""
     dx, dy = terrain.cell_metres()
     area = float(np.sum(np.isfinite(terrain.elevation) * dx) * dy)
     metres_per_inch = (terrain.extent[1] - terrain.extent[0]) * terrain.km_per_unit * 1000 / width_in
@@ -224,15 +231,29 @@ def legible_order(path, terrain, width_in):
     return max(lengths, default=1)
 
 
-def draw_rivers(axes, path, terrain, width_in):
-    """Blue lines, wider with Strahler order. Returns the lowest order drawn."""
-    lowest = legible_order(path, terrain, width_in)
+def river_width(order, lowest):
+    """Line width in points."""
+    return 0.45 + 0.36 * (order - lowest)
+
+
+def draw_rivers(axes, path, terrain, lowest):
+    """Blue lines from the lowest Strahler order on, wider with it."""
     rivers = read_lines(path, "links", f"strahler >= {lowest}")
     rivers.sort(key=lambda river: river[1].get("strahler") or 1)
-    widths = [0.45 + 0.36 * ((fields.get("strahler") or 1) - lowest) for _, fields in rivers]
+    widths = [river_width(fields.get("strahler") or 1, lowest) for _, fields in rivers]
     axes.add_collection(LineCollection([line * terrain.scale for line, _ in rivers], linewidths=widths,
                                        colors=style.RIVER, capstyle="round", joinstyle="round", zorder=3))
-    return lowest
+
+
+def draw_key(axes, lowest, highest, outlines):
+    """What the widths of the rivers and the outlines mean, in axes of its own; `outlines`: (words, line width)."""
+    axes.set_axis_off()
+    handles = [Line2D([], [], color=style.RIVER, linewidth=river_width(order, lowest), label=f"order {order}")
+               for order in range(lowest, highest + 1)]
+    if handles:
+        handles[0].set_label(f"river of Strahler order {lowest}")
+    handles += [Line2D([], [], color=style.DIVIDE, linewidth=width, label=words) for words, width in outlines]
+    axes.legend(handles=handles, loc="center", ncol=len(handles), frameon=False, handlelength=1.8, columnspacing=1.4)
 
 
 def draw_basins(axes, path, terrain, width=0.5):
@@ -294,16 +315,22 @@ def single(raster, network, studied=None):
     left, right, bottom, top = terrain.extent
     ratio = (top - bottom) / (right - left) * terrain.aspect
     panel = min(5.3, 5.9 / ratio)
-    drawing = style.figure(max(2.2, panel * ratio + 0.55), panel + 1.3)
-    axes = drawing.add_subplot()
+    drawing = style.figure(max(2.4, panel * ratio + 0.75), panel + 1.3)
+    grid = drawing.add_gridspec(2, 1, height_ratios=(panel * ratio, KEY_HEIGHT))
+    axes = drawing.add_subplot(grid[0])
     limits = height_range(terrain)
+    lengths = river_lengths(network)
+    lowest = legible_order(lengths, terrain, panel)
     draw_terrain(axes, terrain, limits)
-    lowest = draw_rivers(axes, network, terrain, panel)
+    draw_rivers(axes, network, terrain, lowest)
     draw_basins(axes, network, terrain)
+    outlines = [("catchment", 0.5)]
     if studied:
         draw_basins(axes, studied, terrain, 1.4)
+        outlines.append(("the studied one", 1.4))
     draw_scale_bar(axes, terrain)
     draw_colours(drawing, axes, limits, [terrain])
+    draw_key(drawing.add_subplot(grid[1]), lowest, max(lengths, default=0), outlines)
     return drawing, lowest
 
 
@@ -320,18 +347,24 @@ def pair(real, synthetic):
     limits = height_range(shown, second)
     span = [max(_span_km(t)[i] for t in (first, second)) for i in (0, 1)]
     panel = min(4.1, 5.2 * span[0] / span[1])
-    drawing = style.figure(panel * span[1] / span[0] + 0.65, 2 * panel + 1.9)
-    axes = drawing.subplots(1, 2)
+    drawing = style.figure(panel * span[1] / span[0] + 0.85, 2 * panel + 1.9)
+    grid = drawing.add_gridspec(2, 2, height_ratios=(panel * span[1] / span[0], KEY_HEIGHT))
+    axes = [drawing.add_subplot(grid[0, i]) for i in (0, 1)]
+    lengths = [river_lengths(network) for _, network, _ in (real, synthetic)]
+    lowest = max(legible_order(each, terrain, panel * _span_km(terrain)[0] / span[0])
+                 for each, terrain in zip(lengths, (first, second)))
     for axis, terrain, (_, network, title), fade in zip(axes, (first, second), (real, synthetic), (faded, None)):
         draw_terrain(axis, terrain, limits, fade)
         _centre(axis, terrain, span)
-        draw_rivers(axis, network, terrain, panel * _span_km(terrain)[0] / span[0])
+        draw_rivers(axis, network, terrain, lowest)
         draw_basins(axis, network, terrain, 0.7)
         draw_scale_bar(axis, terrain)
         axis.set_title(title)
     if faded is not None:
         axes[1].set_ylabel("")
     draw_colours(drawing, axes, limits, [shown, second])
+    highest = max((order for each in lengths for order in each), default=0)
+    draw_key(drawing.add_subplot(grid[1, :]), lowest, highest, [("catchment", 0.7)])
     return drawing
 
 

@@ -3,6 +3,7 @@
 import base64
 import math
 import os
+import re
 from html import escape
 
 import curves
@@ -12,7 +13,7 @@ import style
 import summary_text
 from data import get, reason
 from study import Study
-from words import DASH, Footnotes, interval, number, plain, show, table
+from words import DASH, Footnotes, fixed, height_decimals, interval, number, plain, show, table
 
 HERE = os.path.dirname(os.path.realpath(__file__))
 REAL = '<span class="real">real</span>'
@@ -66,28 +67,41 @@ def terrains(study):
     return (picture(style.png(both, style.DPI), "png",
                     "Two shaded relief maps beside each other: the real terrain and the simulated one, with their rivers.",
                     "<b>Figure 1.</b> Real and synthetic terrain at one scale and one "
-                    "range of colours, lit from the north-west, with rivers (wider with Strahler order) and basin outlines. "
-                    "Ground outside the simulated outline is pale.")
+                    "range of colours, lit from the north-west. Blue: rivers, wider with Strahler order; dark lines: "
+                    "outlines of the catchments. Ground outside the simulated outline is pale.")
             + picture(style.png(overview, style.MAP_DPI), "png",
                       f"Shaded relief map of {study.name()} with {rivers} in blue and basin outlines in dark grey.",
-                      f"<b>Figure 2.</b> The whole measured terrain with {rivers} (channels begin at {threshold} km²) and the "
-                      "outlines of its larger basins" + (", the studied one drawn bold." if study.real_step == "basin" else "."),
+                      f"<b>Figure 2.</b> The whole measured terrain with {rivers} (channels begin at {threshold} km²; wider "
+                      "with order) and the outlines of its larger catchments"
+                      + (", the studied one drawn bold." if study.real_step == "basin" else "."),
                       "medium"))
 
 
 def slopes(study):
-    curve = curves.fitted_curve(study.fit, study.fit_table)
-    label = curves.law_label(study.fit.get("theta"), study.fit.get("theta_se"))
-    real_fit = (curve, label) if curve else curves.summary_line(study.real)
-    drawing = curves.slope_area_pair([study.real, study.synthetic], (None, study.theory),
-                                     (real_fit, curves.summary_line(study.synthetic)))
-    theta = [show(get(side.terrain, "slope_area.theta")) for side in (study.real, study.synthetic)]
-    law = " The dotted line is the steady state that the simulation aims at." if study.theory else ""
+    fitted = curves.fitted_line(study.fit, study.fit_table)
+    drawing = curves.slope_area_pair(study.sides(), ("Real", "Synthetic"), fitted, study.theory, study.no_theory)
+    theta = [show(get(side.terrain, "slope_area.theta")) for side in study.sides()]
     return picture(style.svg(drawing), "svg+xml",
-                   f"Slope against drainage area on logarithmic axes; concavity {theta[0]} real, {theta[1]} synthetic.",
-                   "<b>Figure 3.</b> Slope against drainage area: single measurements (dots), means of bins of a tenth of a "
-                   "decade with their standard errors (on a grid longer pieces of river count more), and the fitted law <i>S</i> = <i>k</i><sub>s</sub> <i>A</i>"
-                   f"<sup>−θ</sup> (line; the real one with its 95 % band).{law}")
+                   "Slope against drainage area on logarithmic axes; concavity by regression "
+                   f"{theta[0]} real, {theta[1]} synthetic.", f"<b>Figure 3.</b> {_slope_words(study, fitted)}")
+
+
+def _slope_words(study, fitted):
+    sized = any(side.cloud[2] is not None for side in study.sides())
+    words = ["Slope against drainage area: single pieces of river (dots"
+             + (", larger for longer pieces" if sized else "") + ") and means over bins of a tenth of a decade with their "
+             "standard errors. Longer pieces count more in the means"
+             + (", about as the area of their dots" if sized else "") + ": steep pieces are short, so that most dots "
+             "can lie above the means."]
+    if fitted:
+        words.append("Full line: the <b>fit</b> (robust: outlying bins pull less), with its 95 % band; it gives <i>k</i> and "
+                     "<i>m</i>.")
+    words.append("Dashed line: the <b>regression</b>, plain least squares, made alike on both sides so that they can be compared.")
+    if study.theory:
+        words.append("Dotted line: the steady state that the simulation aims at.")
+    if study.no_theory:
+        words.append(f"There is {study.no_theory}.")
+    return " ".join(words)
 
 
 def shape(study):
@@ -98,23 +112,32 @@ def shape(study):
             + picture(style.svg(curves.horton(study.sides())), "svg+xml",
                       "Four plots of stream number, mean length, mean drainage area and mean slope against Strahler order.",
                       "<b>Figure 5.</b> Horton’s laws: streams of each Strahler order, their mean length, drainage area and "
-                      "slope. The ratios are those of the regression lines.", "medium"))
+                      f"slope. The ratios are those of the regression lines.{_few_orders(study)}", "medium"))
 
+
+def _few_orders(study):
+    few = [side.label for side in study.sides() if len(side.terrain.get("strahler") or []) == 2]
+    return f" With two orders only ({' and '.join(few)}) a line merely joins two points." if few else ""
+
+
+HEIGHT = "heights"  # in place of digits: as many decimals as suit the relief
+RELIEF = "relief"   # in place of a path
 
 #: label, factor to the shown unit, unit, digits, paths (the first that exists counts)
 ROWS = (
     ("Ground",),
     ("Area", 1e-6, "km²", 4, "input.area_m2", "domain_area_m2"),
-    ("Lowest elevation", 1, "m", 4, "input.elevation_min_m"),
-    ("Highest elevation", 1, "m", 4, "input.elevation_max_m", "elevation_max_m"),
-    ("Mean elevation", 1, "m", 4, "input.elevation_mean_m", "elevation_mean_m"),
+    ("Lowest elevation", 1, "m", HEIGHT, "input.elevation_min_m"),
+    ("Highest elevation", 1, "m", HEIGHT, "input.elevation_max_m", "elevation_max_m"),
+    ("Mean elevation", 1, "m", HEIGHT, "input.elevation_mean_m", "elevation_mean_m"),
+    ("Relief (highest − lowest)", 1, "m", HEIGHT, RELIEF),
     ("Hypsometric integral", 1, "", 3, "hypsometry.integral"),
     ("Skewness of the hypsometric curve", 1, "", 3, "hypsometry.skewness"),
     ("Kurtosis of the hypsometric curve", 1, "", 3, "hypsometry.kurtosis"),
     ("Slope and area",),
-    ("Concavity θ", 1, "", 4, "slope_area.theta"),
-    ("Steepness <i>k</i><sub>s</sub>", 1, "m<sup>2θ</sup>", 3, "slope_area.ks"),
-    ("Goodness of the law, <i>r</i>²", 1, "", 3, "slope_area.r2"),
+    ("Concavity θ, regression", 1, "", 4, "slope_area.theta"),
+    ("Steepness <i>k</i><sub>s</sub>, regression", 1, "m<sup>2θ</sup>", 3, "slope_area.ks"),
+    ("Goodness of the regression, <i>r</i>²", 1, "", 3, "slope_area.r2"),
     ("Channels",),
     ("Channel threshold", 1e-6, "km²", 3, "channels.threshold_area_m2"),
     ("Share of channels in complete catchments", 100, "%", 3, "channels.share_used"),
@@ -146,19 +169,32 @@ OPTIONAL = ("More of the network",)  # shown only where measured
 def numbers(study):
     footnotes, rows = Footnotes(), []
     optional = False
+    reliefs = [each[2] for each in map(study.relief, (0, 1)) if each]
+    decimals = height_decimals(max(reliefs, default=0))
     for row in ROWS:
         if len(row) == 1:
             optional = row[0] in OPTIONAL
             rows.append(list(row))
             continue
         label, factor, unit, digits, *paths = row
-        found = [study.value(which, *paths) for which in (0, 1)]
+        found = [_found(study, which, paths) for which in (0, 1)]
+        if digits == HEIGHT:
+            rows.append([label, *(DASH + footnotes.mark(why) if value is None else fixed(value, decimals)
+                                  for value, why in found), unit])
+            continue
         if optional and found[0][0] is None and found[1][0] is None:
             continue
         rows.append([label, *(_cell(value, factor, digits, why, footnotes) for value, why in found), unit or DASH])
     rows = [row for i, row in enumerate(rows) if len(row) > 1 or (i + 1 < len(rows) and len(rows[i + 1]) > 1)]
     covers = f"<p>Both sides were measured by the same code. The real one covers {_coverage(study)}.</p>"
     return covers + table(["", REAL, SYNTHETIC, "unit"], rows, "numbers-table") + footnotes.html()
+
+
+def _found(study, which, paths):
+    if RELIEF in paths:
+        relief = study.relief(which)
+        return (None, "") if relief is None else (relief[2], "")
+    return study.value(which, *paths)
 
 
 def _coverage(study):
@@ -175,12 +211,12 @@ def _cell(value, factor, digits, why, footnotes):
 
 
 FIT_ROWS = (
-    ("Concavity θ = <i>m</i>/<i>n</i>", "theta", "theta_se", "theta_ci95", "", 4),
+    ("Concavity θ = <i>m</i>/<i>n</i>, fit", "theta", "theta_se", "theta_ci95", "", 4),
     ("Area exponent <i>m</i>", "m", "m_se", "m_ci95", "", 4),
-    ("Erodibility <i>k</i>", "k", "k_se", "k_ci95", "m<sup>1−2<i>m</i></sup>/yr", 3),
     ("<i>k</i> <i>A</i><sub>0</sub><sup><i>m</i></sup> at the reference area", "k_at_reference_area",
      "k_at_reference_area_se", "k_at_reference_area_ci95", "m/yr", 3),
-    ("Steepness <i>k</i><sub>s</sub>", "ks", "ks_se", "ks_ci95", "m<sup>2θ</sup>", 3),
+    ("Erodibility <i>k</i>", "k", "k_se", "k_ci95", "m<sup>1−2<i>m</i></sup>/yr", 3),
+    ("Steepness <i>k</i><sub>s</sub>, fit", "ks", "ks_se", "ks_ci95", "m<sup>2θ</sup>", 3),
     ("<i>k</i>/<i>u</i>", "k_over_uplift", "k_over_uplift_se", "k_over_uplift_ci95", "m<sup>−2<i>m</i></sup>", 3),
 )
 
@@ -197,8 +233,17 @@ def fit(study):
         why = footnotes.mark(reason(content, key)) if value is None else ""
         spread = interval(content.get(bounds), digits) or _two_errors(value, content.get(error), digits)
         rows.append([label, show(value, digits) + why, number(content.get(error), 2), spread or DASH, unit or DASH])
-    return (_fit_words(content) + table(["", "value", "standard error", "95 % interval", "unit"], rows)
+    return (_fit_words(content) + _two_thetas(study) + table(["", "value", "standard error", "95 % interval", "unit"], rows)
             + footnotes.html() + _caveats(content))
+
+
+def _two_thetas(study):
+    plain_theta, fitted_theta = get(study.real.terrain, "slope_area.theta"), study.fit.get("theta")
+    if plain_theta is None or fitted_theta is None:
+        return ""
+    return (f"<p>The fit is robust (outlying bins pull less) and gives θ = {number(float(fitted_theta), 3)}; the plain "
+            f"regression on the same catchment, which section 4 sets beside the synthetic one’s, gives "
+            f"{number(float(plain_theta), 3)}.</p>")
 
 
 def _two_errors(value, error, digits):
@@ -260,14 +305,20 @@ def comparison(study):
         title = ASPECTS.get(name, name.replace("_", " ").capitalize())
         quantity = QUANTITIES.get(aspect.get("quantity"), escape(str(aspect.get("quantity") or "")))
         cells = [_aspect_cell(study, aspect, key, footnotes) for key in ("a", "b", "distance", "scale", "verdict")]
-        cells[2] += footnotes.mark(aspect.get("distance_definition") or "")
+        cells[2] += footnotes.mark(_sides_named(aspect.get("distance_definition") or ""))
         rows.append([escape(title) + (f" ({quantity})" if quantity else ""), *cells])
     head = ["aspect", REAL, SYNTHETIC, "distance", "scale (model’s own spread)", "verdict"]
     return table(head, rows) + footnotes.html()
 
 
+def _sides_named(definition):
+    """The comparison says a and b; the table over the footnotes says real and synthetic."""
+    definition = re.sub(r"\b([Oo]f|in|for) a(?=\s*(?:[/,;)−–-]|$))", r"\1 real", definition)
+    return re.sub(r"\b([Oo]f|in|for|over) b\b", r"\1 synthetic", definition)
+
+
 ASPECTS = {"slope_area": "Slope–area", "horton": "Horton’s ratios"}
-QUANTITIES = {"theta": "θ", "RB": "<i>R</i><sub>B</sub>"}
+QUANTITIES = {"theta": "θ, regression", "RB": "<i>R</i><sub>B</sub>"}
 
 
 def _aspect_cell(study, aspect, key, footnotes):
@@ -290,8 +341,11 @@ def notes(study):
     found = study.notes()
     if not found:
         return "<p>Nothing was noted.</p>"
-    lines = (f"<li><b>{step}</b>{' · ' + escape(key) if key else ''}: {escape(text)}</li>" for step, key, text in found)
-    return "<ul>" + "".join(lines) + "</ul>"
+    lines = [(quiet, f"<li><b>{step}</b>{' · ' + escape(key) if key else ''}: {escape(text)}</li>")
+             for step, key, text, quiet in found]
+    warnings, reasons = ("".join(line for quiet, line in lines if quiet == wanted) for wanted in (False, True))
+    return ((f"<ul>{warnings}</ul>" if warnings else "<p>No warnings.</p>")
+            + (f"<details><summary>Why some values are empty</summary><ul>{reasons}</ul></details>" if reasons else ""))
 
 
 #: Left out: what changes from run to run, and lists that are better read in the manifest itself.

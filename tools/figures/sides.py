@@ -62,19 +62,33 @@ def _cloud(folder):
     table = read_csv(folder, "slope_area_nodes.csv") or read_csv(folder, "slope_area_points.csv")
     area, slope = table.get("area_m2", np.array([])), table.get("slope", np.array([]))
     limited = table.get("talus_limited", np.zeros(area.size)) > 0
-    return area[~limited], slope[~limited]
+    length = table.get("length_m")
+    return area[~limited], slope[~limited], None if length is None else length[~limited]
 
 
 def theory(folder, side):
-    """Area and slope of the steady state S = (u/k)^(1/n)·A^(−m/n) over the side's areas; None where u, k or rain vary."""
+    """Area and slope of the steady state S = (u/k)^(1/n)·A^(−m/n) over the side's areas, or None and the reason: where
+    u, k or rain vary from place to place, one area has many steady slopes."""
     experiment = read_toml(folder, "experiment.toml")
+    varying = _varying(experiment)
+    if varying:
+        return None, f"no steady line: {varying} differs from place to place, so one area has many steady slopes"
     river, uplift = experiment.get("river", {}), experiment.get("uplift", {})
     k, m, n, u = river.get("k"), river.get("m"), river.get("n", 1.0), uplift.get("rate_m_per_yr")
-    varies = (uplift.get("pattern", "constant") != "constant" or uplift.get("field") or river.get("k_field")
-              or experiment.get("rainfall", {}).get("pattern", "constant") != "constant")
     area = np.asarray(side.cloud[0] if len(side.cloud[0]) else side.bins[0], dtype=float)
     area = area[area > 0]
-    if varies or area.size == 0 or not all(isinstance(x, (int, float)) and x > 0 for x in (k, m, n, u)):
-        return None
+    if area.size == 0 or not all(isinstance(x, (int, float)) and x > 0 for x in (k, m, n, u)):
+        return None, ""
     ends = np.array([area.min(), area.max()])
-    return ends, (u / k) ** (1 / n) * ends ** (-m / n)
+    return (ends, (u / k) ** (1 / n) * ends ** (-m / n)), ""
+
+
+def _varying(experiment):
+    """What the experiment lets differ from place to place, in words; nothing where all is uniform."""
+    uplift, rain = experiment.get("uplift", {}), experiment.get("rainfall", {})
+    pattern = uplift.get("pattern", "constant")
+    if pattern != "constant" or uplift.get("field"):
+        return "uplift" + (f" ({pattern})" if pattern != "constant" else "")
+    if experiment.get("river", {}).get("k_field"):
+        return "erodibility"
+    return "rainfall" if rain.get("pattern", "constant") != "constant" or rain.get("field") else ""

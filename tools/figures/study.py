@@ -3,7 +3,11 @@
 import os
 
 import sides
-from data import get, notes_of, read_csv, read_json, read_toml, reason, require_json
+from data import absences, get, notes_of, read_csv, read_json, read_toml, reason, require_json
+
+#: What a reader misses first: a note that explains why one of these is absent is a warning.
+HEADLINE = ("hypsometry.integral", "slope_area.theta", "channels.drainage_density_per_m", "horton.RB.regression", "theta",
+            "k_at_reference_area")
 
 
 class Study:
@@ -24,7 +28,7 @@ class Study:
         self.synthetic_step = self._first_step("synthetic", "simulate")
         self.real = sides.from_folder(self.step(self.real_step), "real", "real")
         self.synthetic = sides.from_folder(self.step(self.synthetic_step), "synthetic", "synthetic")
-        self.theory = sides.theory(self.step("simulate"), self.synthetic)
+        self.theory, self.no_theory = sides.theory(self.step("simulate"), self.synthetic)
         self.summaries = [read_json(self.step(step), "summary.json") for step in (self.real_step, self.synthetic_step)]
 
     def _first_step(self, *names):
@@ -52,8 +56,13 @@ class Study:
         reasons = (reason(document, path) for document in documents for path in paths)
         return None, next(filter(None, reasons), "")
 
+    def relief(self, which):
+        """Lowest and highest elevation of one side and their difference (m); None where one is not known."""
+        low, high = (self.value(which, f"input.elevation_{end}_m")[0] for end in ("min", "max"))
+        return None if low is None or high is None else (low, high, high - low)
+
     def notes(self):
-        """Every note and warning once, with the step it came from."""
+        """Every note and warning once: (step, key, sentence, whether it only explains an empty value of lesser weight)."""
         found = []
         steps = {"measure": self.measure, self.real_step: self.summaries[0], "fit": self.fit, "simulate": self.simulate,
                  self.synthetic_step: self.summaries[1], "compare": self.comparison, "run": self.manifest}
@@ -61,6 +70,15 @@ class Study:
             content = content or {}
             warnings = notes_of({"notes": content.get("warnings")})
             for key, sentence in (*notes_of(content), *notes_of(content.get("terrain")), *warnings):
-                if key not in steps and (key, sentence) not in (each[1:] for each in found):
-                    found.append((step, key, sentence))
+                if key not in steps and (key, sentence) not in (each[1:3] for each in found):
+                    found.append((step, key, sentence, _only_explains(content, key)))
         return found
+
+
+def _only_explains(content, key):
+    """True for a note on values that are null, none of them a headline."""
+    if not key:
+        return False
+    missing = [name for part in key.split(" and ") for name in absences(content, part)]
+    return bool(missing) and not any((headline + ".").startswith(name.removeprefix("terrain.") + ".")
+                                     for name in missing for headline in HEADLINE)

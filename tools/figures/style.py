@@ -33,7 +33,7 @@ LOOK = {
 TINT = LinearSegmentedColormap.from_list(
     "thalweg", ["#7d9a8c", "#a3b697", "#cccda8", "#ded4b6", "#e2cfb9", "#e6d8cc", "#f1ebe6"])
 
-DPI = 200
+DPI = 150
 MAP_DPI = 150
 WIDTH = 7.2  # inches: the text width of a two-column journal page
 
@@ -70,7 +70,7 @@ def png(drawing, dpi=DPI):
     drawing.canvas.draw()
     image = Image.fromarray(_pixels(drawing)).quantize(256, method=Image.Quantize.MEDIANCUT)
     stream = io.BytesIO()
-    image.save(stream, format="PNG", dpi=(dpi, dpi), optimize=False, compress_level=9)
+    image.save(stream, format="PNG", dpi=(dpi, dpi), optimize=False, compress_level=6)
     return stream.getvalue()
 
 

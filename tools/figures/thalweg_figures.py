@@ -3,7 +3,7 @@
 """Figures and report of the thalweg commands: thalweg_figures.py analyze|simulate|fit|compare|report|study DIR
 
 Reads what a command wrote into DIR and adds DIR/figures/*.png; for `report`, DIR/report.html from the folders of a whole
-study; for `study`, that report and the figures of each of its folders at once, on two processors. Bytes depend on the
+study; for `study`, that report and the figures of its main steps at once, on two processors. Bytes depend on the
 files read alone. Exit code 1 and one line on stderr when something needed is not there.
 """
 import multiprocessing
@@ -20,7 +20,7 @@ def figures_of_analyze(folder):
     side = sides.from_folder(folder, "measured", "real")
     yield "map", maps.single(_file(folder, "filled.tif"), _file(folder, "network.gpkg"))[0]
     yield "hypsometry", curves.hypsometry([side])
-    yield "slope_area", curves.slope_area(side, fit=curves.summary_line(side))
+    yield "slope_area", curves.slope_area(side, regression=curves.summary_line(side))
     yield "horton", curves.horton([side])
 
 
@@ -30,7 +30,9 @@ def figures_of_simulate(folder):
     side = sides.from_folder(folder, "simulated", "synthetic")
     yield "map", maps.single(_file(folder, "elevation.tif"), _file(folder, "network.gpkg"))[0]
     yield "hypsometry", curves.hypsometry([side])
-    yield "slope_area", curves.slope_area(side, theory=sides.theory(folder, side))
+    theory, remark = sides.theory(folder, side)
+    yield "slope_area", curves.slope_area(side, theory=theory, remark=remark)
+    yield "horton", curves.horton([side])
     yield "history", curves.history(read_csv(folder, "history.csv"))
 
 
@@ -40,9 +42,7 @@ def figures_of_fit(folder):
     fit, table = require_json(folder, "fit.json"), read_csv(folder, "fit.csv")
     side = curves.Side("target", style.LOOK["real"])
     side.bins = tuple(table.get(name, ()) for name in ("area_m2", "slope", "slope_se"))
-    curve = curves.fitted_curve(fit, table)
-    label = curves.law_label(fit.get("theta"), fit.get("theta_se"))
-    yield "slope_area", curves.slope_area(side, fit=curve and (curve, label))
+    yield "slope_area", curves.slope_area(side, curves.fitted_line(fit, table))
 
 
 def figures_of_compare(folder):
@@ -51,7 +51,7 @@ def figures_of_compare(folder):
     comparison = require_json(folder, "comparison.json")
     pair = [sides.from_comparison(comparison, "a", folder, sides.name_of(comparison, "a"), "real"),
             sides.from_comparison(comparison, "b", folder, sides.name_of(comparison, "b"), "synthetic")]
-    yield "slope_area", curves.slope_area_pair(pair, fits=[curves.summary_line(side) for side in pair])
+    yield "slope_area", curves.slope_area_pair(pair, [side.label for side in pair])
     yield "hypsometry", curves.hypsometry(pair)
     yield "horton", curves.horton(pair)
 
@@ -77,9 +77,8 @@ def write(path, content):
         raise
 
 
-#: The steps of a study, slowest first, and the folders that `run` gives them.
-STEPS = (("report", ""), ("analyze", "measure"), ("analyze", "basin"), ("analyze", "synthetic"), ("simulate", "simulate"),
-         ("compare", "compare"), ("fit", "fit"))
+#: What is drawn of a study, slowest first: the whole DEM and the synthetic raster are seen in the report alone.
+STEPS = (("report", ""), ("simulate", "simulate"), ("analyze", "basin"), ("compare", "compare"), ("fit", "fit"))
 
 
 def run_study(folder):

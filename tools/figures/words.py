@@ -18,7 +18,7 @@ def number(value, digits=3):
     if value == 0:
         return "0"
     exponent = math.floor(math.log10(abs(float(f"{value:.{digits - 1}e}"))))
-    if not -4 < exponent < 7:
+    if not -5 < exponent < 7:
         mantissa = f"{value / 10.0**exponent:.{digits - 1}f}".replace("-", "−")
         return f"{mantissa} × 10<sup>{str(exponent).replace('-', '−')}</sup>"
     decimals = max(0, digits - 1 - exponent)
@@ -29,6 +29,18 @@ def quantity(value, unit, digits=3):
     """A number with its unit."""
     text = number(value, digits)
     return text if text == DASH or not unit else f"{text} {unit}"
+
+
+def height_decimals(relief):
+    """Decimals with which the heights of a terrain are written, all alike: three digits of its relief."""
+    return max(0, min(3, 2 - math.floor(math.log10(relief)))) if relief and relief > 0 else 0
+
+
+def fixed(value, decimals):
+    """A number with so many decimals."""
+    if not isinstance(value, (int, float)) or not math.isfinite(value):
+        return DASH
+    return f"{value:,.{decimals}f}".replace(",", " ").replace("-", "−")
 
 
 def plain(value):

@@ -20,7 +20,7 @@ std::filesystem::path fetcher() { return script("fetch/thalweg_fetch.py", ""); }
 std::string file_name(const std::string& source) {
     const std::size_t colon = source.find(':');
     std::string name = source.substr(0, colon);
-    if (name == "opentopography" && colon != std::string::npos) name += "-" + source.substr(colon + 1);
+    if (name == "opentopography" && colon != std::string::npos) name.append("-").append(source, colon + 1);
     for (char& c : name) {
         if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '-') c = '_';
     }

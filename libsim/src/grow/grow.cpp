@@ -1,0 +1,333 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/grow/grow.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <queue>
+#include <vector>
+
+#include "grow/growing_tree.hpp"
+#include "grow/junction.hpp"
+#include "grow/plane.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/core/random.hpp"
+
+namespace thalweg::grow {
+namespace {
+
+// Shares of C (SCIENCE, after Kelley et al. 1988).
+constexpr double shortest_split_link = 0.2;  // halved, when nothing else can grow, down to the second value
+constexpr double shortest_split_at_last = 0.02;
+constexpr double room_beyond_source = 0.5;
+constexpr double least_width_of_side = 0.5;
+constexpr double shortest_tributary = 0.5;  // of the shortest link that is split
+constexpr double density_met = 0.01;        // so much length may be missing: under 1 % in a basin of one C²
+
+constexpr Index draws_per_step = 16;
+constexpr Index tries_per_side = 4;
+
+/// What is drawn: each has a stream of random numbers of its own.
+enum class Draw : std::uint32_t { junction = 0x67726f00, length, side, lengthening, sidewall };
+
+constexpr Side opposite(Side side) { return side == Side::left ? Side::right : Side::left; }
+
+/// mean + Rand·delta, Rand uniform on [−1, 1], kept within 0.05–0.95 of the whole.
+double drawn_share(double mean, double delta, double uniform) {
+    return std::clamp(mean + (2 * uniform - 1) * delta, 0.05, 0.95);
+}
+
+/// A link that may grow, with the excess it had when it was entered.
+struct Candidate {
+    double excess;
+    Index link;
+    bool operator<(const Candidate& other) const {
+        return excess != other.excess ? excess < other.excess : link > other.link;
+    }
+};
+
+class Grower {
+  public:
+    Grower(GrowingTree tree, const Dials& dials, double basin_area);
+    Growth run(const Point& origin);
+
+  private:
+    double uniform(Draw, std::uint64_t number) const;
+    double excess(Index link) const;
+    double beyond_source(Index link) const;
+    double missing_length() const;
+    void enter(Index link);
+    bool take_candidate(Index& link);
+    bool density_reached() const;
+    bool ease_rules();
+    void lengthen(Index link);
+    bool add_tributary(Index link);
+    Side drawn_side(const GrowingLink&, double share_of_link, double number_drawn) const;
+    bool is_wide_enough(const GrowingLink&, Side) const;
+    std::array<double, 2> drawn_sidewalls(Index link) const;
+    StopReason grow_until_stopped();
+
+    GrowingTree tree_;
+    Dials dials_;
+    const double c_;
+    const double wanted_length_;
+    const double link_limit_;
+    double shortest_split_;  ///< m
+    std::priority_queue<Candidate> candidates_;
+    std::vector<std::uint8_t> is_refused_;
+    std::uint64_t step_ = 0;
+    Index lengthened_ = 0;
+    Index refused_ = 0;
+    Index last_resorts_ = 0;
+};
+
+Grower::Grower(GrowingTree tree, const Dials& dials, double basin_area)
+    : tree_(std::move(tree)),
+      dials_(dials),
+      c_(dials.channel_maintenance_m),
+      wanted_length_(basin_area / c_),
+      link_limit_(std::min(1000 + 400 * basin_area / (c_ * c_), 4e8)),
+      shortest_split_(shortest_split_link * c_) {
+    tree_.links[0].sidewall_slope = drawn_sidewalls(0);
+    enter(0);
+}
+
+double Grower::uniform(Draw draw, std::uint64_t number) const {
+    return uniform_at(dials_.seed, static_cast<std::uint32_t>(draw), number);
+}
+
+double Grower::excess(Index link) const { return tree_.links[link].area() - c_ * tree_.links[link].length_m; }
+
+/// 0 for interior links.
+double Grower::beyond_source(Index link) const {
+    if (!tree_.links[link].is_exterior()) return 0;
+    const Index head = head_of(tree_, link);
+    return norm(tree_.basin.point(tree_.basin.target(head)) - tree_.basin.point(tree_.basin.origin(head)));
+}
+
+double Grower::missing_length() const {
+    return dials_.stop == Stop::density ? wanted_length_ - tree_.length_m : std::numeric_limits<double>::infinity();
+}
+
+void Grower::enter(Index link) {
+    is_refused_.resize(tree_.links.size(), 0);
+    const bool long_enough = tree_.links[link].length_m >= shortest_split_;
+    const bool may_grow = long_enough || beyond_source(link) > room_beyond_source * c_;
+    if (excess(link) > 0 && may_grow && !is_refused_[link]) candidates_.push({excess(link), link});
+}
+
+/// The link with the largest excess. Entries of links that have changed since are passed over: each change enters anew.
+bool Grower::take_candidate(Index& link) {
+    while (!candidates_.empty()) {
+        const Candidate top = candidates_.top();
+        candidates_.pop();
+        link = top.link;
+        if (top.excess == excess(link) && !is_refused_[link]) return true;
+    }
+    return false;
+}
+
+bool Grower::density_reached() const { return missing_length() < density_met * c_; }
+
+/// Where straight lines have run into dead ends and the density is still to be met: first exterior links may turn, then
+/// shorter links may be split and shorter tributaries made. All links, also those refused, get another chance.
+bool Grower::ease_rules() {
+    if (dials_.stop != Stop::density || shortest_split_ <= shortest_split_at_last * c_) return false;
+    if (dials_.upstream_link == UpstreamLink::keeps_line) {
+        dials_.upstream_link = UpstreamLink::turns;
+    } else {
+        shortest_split_ = std::max(shortest_split_ / 2, shortest_split_at_last * c_);
+    }
+    ++last_resorts_;
+    std::fill(is_refused_.begin(), is_refused_.end(), 0);
+    refused_ = 0;
+    for (Index link = 0; link < tree_.links.size(); ++link) enter(link);
+    return true;
+}
+
+/// Moves a source on, straight ahead.
+void Grower::lengthen(Index number) {
+    GrowingLink& link = tree_.links[number];
+    const double share = drawn_share(dials_.mean_length, dials_.delta_length, uniform(Draw::lengthening, step_));
+    const double gain = std::min(share * beyond_source(number), missing_length());
+    const Point lower = tree_.basin.point(tree_.basin.origin(link.edge));
+    const Index source = tree_.basin.target(link.edge);
+    const Point along = tree_.basin.point(source) - lower;
+    tree_.basin.move_vertex(source, lower + ((link.length_m + gain) / link.length_m) * along);
+    link.length_m += gain;
+    link.area_m2 = {tree_.basin.area(link.edge), tree_.basin.area(link.edge ^ 1)};
+    tree_.streams[link.stream].length_m += gain;
+    tree_.length_m += gain;
+    ++lengthened_;
+    enter(number);
+}
+
+bool Grower::is_wide_enough(const GrowingLink& link, Side side) const {
+    return link.area_m2[static_cast<std::size_t>(side)] >= least_width_of_side * c_ * link.length_m;
+}
+
+Side Grower::drawn_side(const GrowingLink& link, double share_of_link, double number_drawn) const {
+    const GrowingStream& stream = tree_.streams[link.stream];
+    const double third = (link.start_m + share_of_link * link.length_m) / stream.length_m * 3;
+    const bool is_lowest = link.mark == SourceOrder::opening(link.stream);
+    Side favoured = Side::left;
+    double share = 0.5;
+    if (third < 1 && stream.junction != none) {
+        favoured = tree_.junctions[stream.junction].side;  // a stream's obtuse side faces down its parent's valley
+        share = dials_.lower_bias;
+    } else if (third >= 1 && third < 2 && !is_lowest) {
+        const Index tributary_below = link.mark / 2;  // the mark of a link is the source of the tributary at its foot
+        favoured = opposite(tree_.junctions[tree_.streams[tributary_below].junction].side);
+        share = dials_.middle_bias;
+    }
+    const Side side = number_drawn < share ? favoured : opposite(favoured);
+    return is_wide_enough(link, side) ? side : opposite(side);
+}
+
+/// Tangents of the left and right sidewall's angle.
+std::array<double, 2> Grower::drawn_sidewalls(Index link) const {
+    std::array<double, 2> slope{};
+    for (std::uint64_t side = 0; side < 2; ++side) {
+        const double rand = 2 * uniform(Draw::sidewall, 2 * std::uint64_t{link} + side) - 1;
+        const double angle_deg = dials_.sidewall_angle_deg + rand * dials_.delta_sidewall_angle_deg;
+        slope[side] = std::tan(angle_deg * std::numbers::pi / 180);
+    }
+    return slope;
+}
+
+bool Grower::add_tributary(Index number) {
+    const auto upper = static_cast<Index>(tree_.links.size());
+    for (Index attempt = 0; attempt < 2 * tries_per_side; ++attempt) {
+        const GrowingLink& link = tree_.links[number];
+        const std::uint64_t draw_number = step_ * draws_per_step + attempt;
+        const double place =
+            drawn_share(dials_.mean_junction, dials_.delta_junction, uniform(Draw::junction, draw_number));
+        Side side = drawn_side(link, place, uniform(Draw::side, draw_number));
+        if (attempt >= tries_per_side) side = opposite(side);
+        if (!is_wide_enough(link, side)) continue;
+        const TributaryDraw draw{
+            .share_of_link = place,
+            .side = side,
+            .share_of_way = drawn_share(dials_.mean_length, dials_.delta_length, uniform(Draw::length, draw_number)),
+            .sidewall_slope = drawn_sidewalls(upper + 1),
+            .shortest_m = shortest_tributary * shortest_split_,
+            .longest_m = missing_length()};
+        const auto plan = plan_junction(tree_, dials_, number, draw);
+        if (!plan) continue;
+        make_junction(tree_, *plan);
+        for (const Index link_of_junction : {number, upper, upper + 1}) enter(link_of_junction);
+        return true;
+    }
+    return false;
+}
+
+StopReason Grower::grow_until_stopped() {
+    Index link = none;
+    for (;; ++step_) {
+        if (density_reached()) return StopReason::density_reached;
+        if (static_cast<double>(tree_.links.size()) > link_limit_) return StopReason::link_limit;
+        if (!take_candidate(link)) {
+            if (!ease_rules()) return StopReason::no_candidate;
+            continue;
+        }
+        if (beyond_source(link) > room_beyond_source * c_) {
+            lengthen(link);
+        } else if (!add_tributary(link)) {
+            is_refused_[link] = 1;
+            ++refused_;
+        }
+    }
+}
+
+Growth Grower::run(const Point& origin) {
+    const StopReason reason = grow_until_stopped();
+    return {finished(tree_, origin), reason, lengthened_, refused_, last_resorts_};
+}
+
+/// The basin in coordinates relative to the outlet, which is a corner of the outline.
+Polygon outline_from_outlet(const Basin& basin) {
+    Polygon outline;
+    bool is_corner = false;
+    for (std::size_t i = 0; i < basin.outline.size(); ++i) {
+        outline.push_back(basin.outline[i] - basin.outlet);
+        is_corner = is_corner || basin.outline[i] == basin.outlet;
+    }
+    if (is_corner) return outline;
+    std::size_t nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        const Point side = outline[(i + 1) % outline.size()] - outline[i];
+        const double share = std::clamp(-dot(outline[i], side) / dot(side, side), 0.0, 1.0);
+        const double distance = norm(outline[i] + share * side);
+        if (distance < least) {
+            nearest = i;
+            least = distance;
+        }
+    }
+    outline.insert(outline.begin() + static_cast<std::ptrdiff_t>(nearest) + 1, Point{0, 0});
+    return outline;
+}
+
+Index outlet_corner(const Polygon& outline) {
+    return static_cast<Index>(std::find(outline.begin(), outline.end(), Point{0, 0}) - outline.begin());
+}
+
+/// The basin cut in two along the trunk and on to its edge.
+GrowingTree cut_along_trunk(const Basin& basin, double c) {
+    const Polygon outline = outline_from_outlet(basin);
+    const Index outlet = outlet_corner(outline);
+    GrowingTree tree{.basin = Subdivision(outline), .links = {}, .streams = {}, .junctions = {}, .sources = {}};
+    Subdivision& plane = tree.basin;
+    const Point trunk = basin.source - basin.outlet;
+    const Index from = 2 * outlet;  // half-edge 2i starts in corner i
+    const auto corners = static_cast<Index>(outline.size());
+    const std::array skipped{from, 2 * ((outlet + corners - 1) % corners)};
+    const Ray ray{{0, 0}, (1 / norm(trunk)) * trunk};
+    Hit hit;
+    find_hits(plane, from, skipped, {&ray, 1}, 1e-9 * c, {&hit, 1});
+    if (hit.half_edge == none || hit.distance - norm(trunk) < 1e-6 * c) {
+        throw Error(fmt::format("the trunk's source ({}, {}) is on the basin's outline: it must be inside",
+                                basin.source.x, basin.source.y));
+    }
+    const Index to = hit.at_origin ? hit.half_edge : plane.insert_vertex(hit.half_edge, hit.place);
+    const Index edge = plane.connect(from, to, EdgeKind::channel);
+    plane.set_kind(plane.insert_vertex(edge, trunk), EdgeKind::head);
+    GrowingLink link;
+    link.edge = edge;
+    link.length_m = tree.length_m = norm(trunk);
+    link.area_m2 = {plane.area(edge), plane.area(edge ^ 1)};
+    tree.links.push_back(link);
+    tree.streams.push_back({link.length_m, none});
+    return tree;
+}
+
+void check_against_basin(const Dials& dials, double area, double trunk) {
+    const double c = dials.channel_maintenance_m;
+    if (dials.stop == Stop::density && area / trunk <= c) {
+        throw Error(
+            fmt::format("channel_maintenance_m is {}, but the trunk alone leaves {:.6g} m² of basin per metre "
+                        "of channel: give a smaller one, or a shorter trunk",
+                        c, area / trunk));
+    }
+    if (area > 1e8 * c * c) {
+        throw Error(
+            fmt::format("channel_maintenance_m is {}: a basin of {:.6g} m² would take more than 1e8 links", c, area));
+    }
+}
+
+}  // namespace
+
+Growth grow(const Basin& given, const Dials& dials) {
+    check_dials(dials);
+    const Basin basin = checked_basin(given);
+    GrowingTree tree = cut_along_trunk(basin, dials.channel_maintenance_m);
+    const double area = tree.links[0].area();
+    check_against_basin(dials, area, tree.length_m);
+    return Grower(std::move(tree), dials, area).run(basin.outlet);
+}
+
+}  // namespace thalweg::grow

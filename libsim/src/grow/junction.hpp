@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "grow/growing_tree.hpp"
+#include "thalweg/grow/grow.hpp"
+
+namespace thalweg::grow {
+
+/// The drawn part of a new tributary.
+struct TributaryDraw {
+    double share_of_link;  ///< from the lower end
+    Side side;
+    double share_of_way;  ///< to the polygon's edge
+    std::array<double, 2> sidewall_slope;
+    double shortest_m;  ///< no room for less
+    double longest_m;   ///< a longer one is cut
+};
+
+/// What leaves a junction other than the downstream link.
+enum class Arm : std::uint8_t { divide, tributary, upstream_link };
+
+struct PlannedRay {
+    Arm arm;
+    double angle_rad;  ///< from the link's upstream direction, counter-clockwise
+    Ray ray;
+    Hit hit;
+};
+
+/// A tributary that fits, with all the lines that come with it.
+struct JunctionPlan {
+    Index link;
+    TributaryDraw draw;
+    Index magnitude;  ///< of the link before
+    Point place;
+    double angle_rad;
+    double turn_rad;
+    std::array<PlannedRay, 5> rays;  ///< counter-clockwise from the downstream link
+    Index ray_count = 0;
+    double tributary_length_m = 0;
+    double upstream_length_m = 0;
+};
+
+/// A plan, or nothing if the tributary or a turned upstream link would be too short, or the lines too close to tell
+/// apart.
+std::optional<JunctionPlan> plan_junction(const GrowingTree&, const Dials&, Index link, const TributaryDraw&);
+
+/// Carries it out: three links where there was one. The lower half keeps the link's number, the upper half and the
+/// tributary get the next two.
+void make_junction(GrowingTree&, const JunctionPlan&);
+
+/// Half-edge from an exterior link's source on to the divide.
+inline Index head_of(const GrowingTree& tree, Index link) { return tree.basin.next(tree.links[link].edge); }
+
+}  // namespace thalweg::grow
