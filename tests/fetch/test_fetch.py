@@ -44,6 +44,7 @@ def setUpModule():
         tiles_made.copernicus(HERE / "glo90", 3, south, west)
     tiles_made.copernicus(HERE / "glo90", 3, 49, 7)
     tiles_made.copernicus(HERE / "glo90", 3, 50, 7, cols=800)
+    tiles_made.copernicus(HERE / "glo90", 3, 36, -85, change=with_jacksboro)
     tiles_made.copernicus(HERE / "glo30", 1, 46, 7)
     for west in (-85, -84):
         tiles_made.three_dep_13(HERE / "3dep13", 37, west)
@@ -56,6 +57,14 @@ def setUpModule():
     one_metre_tiles(HERE / "1m")
     SERVER = Server(HERE)
     unittest.addModuleCleanup(SERVER.close)
+
+
+def with_jacksboro(heights):
+    """Real rivers for a study: the embedded DEM, whose cells are those of this tile (-85 to -84, 36 to 37)."""
+    real = gdal.Open(str(Path(__file__).resolve().parents[2] / "validation/data/jacksboro.tif")).ReadAsArray()[:, :402]
+    col, row = round((-84.41375 + 85) * 1200 + 0.5), round((37 - 36.44625) * 1200 + 0.5)
+    heights[row:row + real.shape[0], col:col + 402] = real[:, :1200 - col]
+    return heights
 
 
 def one_metre_tiles(folder):
@@ -622,8 +631,8 @@ class Whole(Fetching):
 
     def test_a_study_may_name_a_source_and_a_box(self):
         study = self.here / "study.toml"
-        study.write_text('[study]\nsource = "copernicus-glo90"\nbbox = [7.4, 46.3, 7.6, 46.5]\nuplift_m_per_yr = 1e-3\n'
-                         "area_min_m2 = 1e5\n[time]\nsolver = \"steady\"\n[river]\nn = 1.0\n")
+        study.write_text('[study]\nsource = "copernicus-glo90"\nbbox = [-84.41, 36.17, -84.08, 36.44]\nuplift_m_per_yr = 3e-5\n'
+                         "[time]\nsolver = \"steady\"\n[river]\nn = 1.0\n")
         words = ("run", study, "--out", self.here / "study", "--no-figures")
         result = thalweg(*words, XDG_CACHE_HOME=str(self.cache))
         self.assertEqual(result.returncode, 0, result.stderr)
@@ -632,7 +641,7 @@ class Whole(Fetching):
         self.assertIn("Copernicus", manifest["input"]["provenance"]["citation"])
         self.assertIn("fetch/copernicus-glo90.tif", [output["file"] for output in manifest["outputs"]])
         said = json.loads((self.here / "study/fetch/copernicus-glo90.tif.json").read_text())
-        self.assertEqual(said["command"], "thalweg fetch copernicus-glo90 --bbox=7.4,46.3,7.6,46.5 --out copernicus-glo90.tif")
+        self.assertEqual(said["command"], "thalweg fetch copernicus-glo90 --bbox=-84.41,36.17,-84.08,36.44 --out copernicus-glo90.tif")
         text = (self.here / "study/simulate/experiment.toml").read_text()
         self.assertIn('dem = "../fetch/copernicus-glo90.tif"', text.replace("'", '"'))
         again = thalweg("simulate", self.here / "study/simulate/experiment.toml", "--out", self.here / "again", "--no-figures")
