@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <memory>
 #include <string>
 
 #include "thalweg/core/error.hpp"
@@ -88,6 +89,45 @@ double largest_filled_part(const Drawing& d, Index label) {
     return largest;
 }
 
+/// The number of parts that hang together by their sides.
+int count_parts(const Drawing& d, Index label) {
+    std::vector<int> seen(d.labels.size(), 0);
+    int parts = 0;
+    for (Index start = 0; start < d.frame.grid.size(); ++start) {
+        if (d.labels[start] != label || seen[start]) continue;
+        seen[start] = 1;
+        ++parts;
+        spread(d.frame.grid, seen, [&](Index node) { return d.labels[node] == label; });
+    }
+    return parts;
+}
+
+double area_of(const MultiPolygon& parts) {
+    double area = 0;
+    for (const PolygonPart& part : parts) {
+        area += area_of(part.outer);
+        for (const Polygon& hole : part.holes) area += area_of(hole);  // clockwise: negative
+    }
+    return area;
+}
+
+std::unique_ptr<OGRMultiPolygon> shape_of(const MultiPolygon& parts) {
+    auto shape = std::make_unique<OGRMultiPolygon>();
+    for (const PolygonPart& part : parts) {
+        auto* polygon = new OGRPolygon;
+        const auto add = [&](const Polygon& points) {
+            auto* ring = new OGRLinearRing;
+            for (const Point& p : points) ring->addPoint(p.x, p.y);
+            ring->closeRings();
+            polygon->addRingDirectly(ring);
+        };
+        add(part.outer);
+        for (const Polygon& hole : part.holes) add(hole);
+        shape->addGeometryDirectly(polygon);
+    }
+    return shape;
+}
+
 /// Starts at the smallest point, so that rings compare whatever vertex they begin with.
 Polygon normal(Polygon ring) {
     const auto before = [](const Point& a, const Point& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); };
@@ -111,19 +151,70 @@ TEST_CASE("all outlines are found in one pass, also at the edge of the grid", "[
     const Drawing d = draw({"0011",  //
                             "0012",  //
                             "3..2"});
-    const std::vector<Polygon> rings = io::cell_outlines(d.frame, d.labels, 5);
-    REQUIRE(rings.size() == 5);
-    CHECK(normal(rings[0]) == normal({{100, 44}, {104, 44}, {104, 50}, {100, 50}}));
-    CHECK(area_of(rings[1]) == 18);
-    CHECK(normal(rings[2]) == normal({{106, 41}, {108, 41}, {108, 47}, {106, 47}}));
-    CHECK(area_of(rings[3]) == 6);
-    CHECK(rings[4].empty());
+    const std::vector<MultiPolygon> all = io::cell_outlines(d.frame, d.labels, 5);
+    REQUIRE(all.size() == 5);
+    CHECK(normal(all[0].at(0).outer) == normal({{100, 44}, {104, 44}, {104, 50}, {100, 50}}));
+    CHECK(area_of(all[1]) == 18);
+    CHECK(normal(all[2].at(0).outer) == normal({{106, 41}, {108, 41}, {108, 47}, {106, 47}}));
+    CHECK(area_of(all[3]) == 6);
+    CHECK(all[4].empty());
+    CHECK(io::cell_outline(d.frame, d.labels, 4).empty());
     for (Index label = 0; label < 4; ++label) {
-        CHECK(normal(io::cell_outline(d.frame, d.labels, label)) == normal(rings[label]));
+        CHECK(normal(io::cell_outline(d.frame, d.labels, label)) == normal(all[label].at(0).outer));
     }
 }
 
-TEST_CASE("of parts that touch at corners only the largest is outlined, and holes are filled", "[polygonize]") {
+TEST_CASE("parts that touch at corners are all there, in the order of their first cells", "[polygonize]") {
+    const Drawing d = draw({"0..0",  //
+                            ".00.",  //
+                            ".00.",  //
+                            "0..."});
+    const MultiPolygon parts = io::cell_outlines(d.frame, d.labels, 1).front();
+    REQUIRE(parts.size() == 4);
+    CHECK(normal(parts[0].outer) == normal({{100, 47}, {102, 47}, {102, 50}, {100, 50}}));
+    CHECK(normal(parts[1].outer) == normal({{106, 47}, {108, 47}, {108, 50}, {106, 50}}));
+    CHECK(normal(parts[2].outer) == normal({{102, 41}, {106, 41}, {106, 47}, {102, 47}}));
+    CHECK(normal(parts[3].outer) == normal({{100, 38}, {102, 38}, {102, 41}, {100, 41}}));
+    for (const PolygonPart& part : parts) CHECK(part.holes.empty());
+}
+
+TEST_CASE("a hole lies in the part around it, clockwise, and an island in it is a part", "[polygonize]") {
+    const Drawing d = draw({"0.00000",  //
+                            "..0...0",  //
+                            "..0.0.0",  //
+                            "..0...0",  //
+                            "0.00000"});
+    const MultiPolygon parts = io::cell_outlines(d.frame, d.labels, 1).front();
+    REQUIRE(parts.size() == 4);
+    REQUIRE(parts[1].holes.size() == 1);
+    CHECK(normal(parts[1].holes[0]) == normal({{106, 38}, {106, 47}, {112, 47}, {112, 38}}));
+    CHECK(area_of(parts[1].holes[0]) == -54);
+    CHECK(normal(parts[2].outer) == normal({{108, 41}, {110, 41}, {110, 44}, {108, 44}}));
+    CHECK(parts[0].holes.size() + parts[2].holes.size() + parts[3].holes.size() == 0);
+}
+
+TEST_CASE("holes that touch at a corner are two, and one that opens at a corner is one", "[polygonize]") {
+    const Drawing touching = draw({"0000",  //
+                                   "0.00",  //
+                                   "00.0",  //
+                                   "0000"});
+    const MultiPolygon two = io::cell_outlines(touching.frame, touching.labels, 1).front();
+    REQUIRE(two.size() == 1);
+    REQUIRE(two[0].holes.size() == 2);
+    CHECK(area_of(two[0].holes[0]) == -6);
+    CHECK(area_of(two[0].holes[1]) == -6);
+    CHECK(shape_of(two)->IsValid());
+    const Drawing open = draw({"00.0",  //
+                               "0.00",  //
+                               "0000"});
+    const MultiPolygon one = io::cell_outlines(open.frame, open.labels, 1).front();
+    REQUIRE(one.size() == 1);
+    REQUIRE(one[0].holes.size() == 1);
+    CHECK(normal(one[0].holes[0]) == normal({{102, 44}, {102, 47}, {104, 47}, {104, 44}}));
+    CHECK(shape_of(one)->IsValid());
+}
+
+TEST_CASE("the border is the largest of parts that touch at corners, its holes filled", "[polygonize]") {
     const Drawing corners = draw({"0...",  //
                                   ".00.",  //
                                   ".00.",  //
@@ -136,7 +227,7 @@ TEST_CASE("of parts that touch at corners only the largest is outlined, and hole
     CHECK(area_of(io::cell_outline(hole.frame, hole.labels, 0)) == 54);
 }
 
-TEST_CASE("a part that meets itself at a corner has a simple outline", "[polygonize]") {
+TEST_CASE("the border of a part that meets itself at a corner is simple", "[polygonize]") {
     const Drawing d = draw({"00.0",  //
                             "0.00",  //
                             "0000"});
@@ -146,7 +237,7 @@ TEST_CASE("a part that meets itself at a corner has a simple outline", "[polygon
     CHECK(area_of(ring) == 11 * 6);
 }
 
-TEST_CASE("outlines of random labels are simple and enclose the largest part that hangs together", "[polygonize]") {
+TEST_CASE("borders of random labels are simple and enclose the largest part that hangs together", "[polygonize]") {
     Random random(7, 1);
     for (int trial = 0; trial < 200; ++trial) {
         const Index rows = 1 + random.below(9);
@@ -154,14 +245,43 @@ TEST_CASE("outlines of random labels are simple and enclose the largest part tha
         Drawing d;
         d.frame.grid = plane_grid(rows, cols, 1, 1);
         for (Index i = 0; i < rows * cols; ++i) d.labels.push_back(random.below(3));
-        const std::vector<Polygon> rings = io::cell_outlines(d.frame, d.labels, 3);
         for (Index label = 0; label < 3; ++label) {
+            const Polygon ring = io::cell_outline(d.frame, d.labels, label);
             if (std::count(d.labels.begin(), d.labels.end(), label) == 0) {
-                CHECK(rings[label].empty());
+                CHECK(ring.empty());
                 continue;
             }
-            REQUIRE(is_valid(rings[label]));
-            CHECK(area_of(rings[label]) == largest_filled_part(d, label));
+            REQUIRE(is_valid(ring));
+            CHECK(area_of(ring) == largest_filled_part(d, label));
+        }
+    }
+}
+
+TEST_CASE("outlines of random labels are valid and cover the label's cells and no others", "[polygonize]") {
+    Random random(11, 1);
+    for (int trial = 0; trial < 400; ++trial) {
+        const Index rows = 1 + random.below(14);
+        const Index cols = 1 + random.below(14);
+        const Index kinds = 2 + random.below(3);
+        Drawing d;
+        d.frame.grid = plane_grid(rows, cols, 1, 1);
+        // Every other grid is mostly of one label, so that it has holes within its parts.
+        for (Index i = 0; i < rows * cols; ++i) {
+            d.labels.push_back(trial % 2 && random.below(3) ? 0 : random.below(kinds));
+        }
+        const std::vector<MultiPolygon> all = io::cell_outlines(d.frame, d.labels, kinds);
+        for (Index label = 0; label < kinds; ++label) {
+            const auto cells = std::count(d.labels.begin(), d.labels.end(), label);
+            CHECK(area_of(all[label]) == cells);
+            CHECK(static_cast<int>(all[label].size()) == count_parts(d, label));
+            const auto shape = shape_of(all[label]);
+            REQUIRE(shape->IsValid());
+            CHECK(shape->get_Area() == cells);
+            for (Index node = 0; node < d.frame.grid.size() && trial < 60; ++node) {
+                const Point center = d.frame.placement.center(d.frame.grid.row(node), d.frame.grid.col(node));
+                const OGRPoint point(center.x, center.y);
+                CHECK(shape->Contains(&point) == (d.labels[node] == label));
+            }
         }
     }
 }
@@ -185,4 +305,5 @@ TEST_CASE("simplifying takes the steps off an outline and keeps its area", "[pol
 TEST_CASE("labels that do not fit the grid are refused", "[polygonize]") {
     const Drawing d = draw({"00", "00"});
     CHECK_THROWS_AS(io::cell_outline(d.frame, std::vector<Index>(3), 0), Error);
+    CHECK_THROWS_AS(io::cell_outlines(d.frame, std::vector<Index>(5), 1), Error);
 }

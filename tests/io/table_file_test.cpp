@@ -10,6 +10,9 @@
 
 #include "io/file_limit.hpp"
 #include "support/temp_folder.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/core/random.hpp"
+#include "thalweg/io/polygonize.hpp"
 
 using namespace thalweg;
 using test::bytes_of;
@@ -49,7 +52,10 @@ std::vector<Table> three_layers() {
             {.name = "basins",
              .columns = {{"area_m2", std::vector<double>{0.5, no_value}}},
              .kind = GeometryKind::polygon,
-             .geometry = {{{0, 0}, {1, 0}, {1, 1}}, {{0, 0}, {2, 0}, {2, 2}, {0, 2}}}}};
+             .geometry = {},
+             .polygons = {{{.outer = {{0, 0}, {1, 0}, {1, 1}}, .holes = {}}},
+                          {{.outer = {{0, 0}, {4, 0}, {4, 4}, {0, 4}}, .holes = {{{1, 1}, {1, 2}, {2, 2}, {2, 1}}}},
+                           {.outer = {{4, 4}, {6, 4}, {6, 6}, {4, 6}}, .holes = {}}}}}};
 }
 
 }  // namespace
@@ -135,11 +141,63 @@ TEST_CASE("a GeoPackage holds its layers, geometries and numbers", "[geopackage]
     CHECK(std::string(link->GetFieldAsString("geom")) == "a");
     CHECK(link->GetGeometryRef()->toLineString()->getNumPoints() == 3);
     OGRLayer* basins = package->GetLayerByName("basins");
+    CHECK(basins->GetGeomType() == wkbMultiPolygon);
     const OGRFeatureUniquePtr triangle(basins->GetNextFeature());
-    CHECK(triangle->GetGeometryRef()->toPolygon()->get_Area() == 0.5);
+    CHECK(triangle->GetGeometryRef()->toMultiPolygon()->get_Area() == 0.5);
     const OGRFeatureUniquePtr square(basins->GetNextFeature());
-    CHECK(square->GetGeometryRef()->toPolygon()->get_Area() == 4);
+    const OGRMultiPolygon* parts = square->GetGeometryRef()->toMultiPolygon();
+    CHECK(parts->IsValid());
+    CHECK(parts->getNumGeometries() == 2);
+    CHECK(parts->getGeometryRef(0)->getNumInteriorRings() == 1);
+    CHECK(parts->get_Area() == 19);
     CHECK(square->IsFieldNull(0));
+}
+
+TEST_CASE("surfaces of cells come back from a GeoPackage with the area of their cells", "[geopackage]") {
+    const TempFolder folder;
+    Raster frame;
+    frame.grid = plane_grid(40, 50, 1, 1);
+    frame.placement = {.west = 500000, .north = 4000000, .cell_width = 30, .cell_height = 20, .crs_wkt = {}};
+    Random random(5, 1);
+    std::vector<Index> labels(frame.grid.size());
+    for (Index& label : labels) label = random.below(4) ? 0 : 1 + random.below(3);
+    std::vector<double> cells(5, 0);  // the last label has none
+    for (const Index label : labels) ++cells[label];
+    const Table basins{.name = "basins",
+                       .columns = {{"cells", cells}},
+                       .kind = GeometryKind::polygon,
+                       .geometry = {},
+                       .polygons = io::cell_outlines(frame, labels, 5)};
+    io::write_geopackage(folder / "g.gpkg", {basins}, "");
+    const GDALDatasetUniquePtr package(
+        GDALDataset::Open((folder / "g.gpkg").c_str(), GDAL_OF_VECTOR, nullptr, nullptr, nullptr));
+    REQUIRE(package);
+    for (const double count : cells) {
+        const OGRFeatureUniquePtr feature(package->GetLayer(0)->GetNextFeature());
+        CHECK(feature->GetFieldAsDouble("cells") == count);
+        const OGRGeometry* shape = feature->GetGeometryRef();
+        CHECK((shape == nullptr) == (count == 0));
+        if (shape == nullptr) continue;
+        CHECK(shape->IsValid());
+        CHECK(shape->toMultiPolygon()->get_Area() == count * 600);
+    }
+}
+
+TEST_CASE("a table whose geometry is not of its kind or number is refused", "[geopackage]") {
+    Table table{.name = "t", .columns = {{"v", std::vector<double>{1}}}, .geometry = {}};
+    CHECK(row_count(table) == 1);
+    table.geometry = {{{0, 0}}};
+    CHECK(error_of([&] { row_count(table); }).find("another kind") != std::string::npos);
+    table.kind = GeometryKind::point;
+    CHECK(row_count(table) == 1);
+    table.polygons.resize(1);
+    CHECK(error_of([&] { row_count(table); }).find("another kind") != std::string::npos);
+    table.kind = GeometryKind::polygon;
+    CHECK(error_of([&] { row_count(table); }).find("another kind") != std::string::npos);
+    table.geometry.clear();
+    CHECK(row_count(table) == 1);
+    table.polygons.resize(2);
+    CHECK(test::is_sentence(error_of([&] { row_count(table); })));
 }
 
 TEST_CASE("a GeoPackage carries the coordinate system it was given", "[geopackage]") {

@@ -30,12 +30,20 @@ def absent(axes, sentence):
 
 
 def label_decades(axis):
-    """Labels 1, 2 and 5 of each decade where an axis spans fewer than two: powers of ten alone would leave it bare."""
+    """Labels powers of ten, or 1, 2 and 5 of each decade where an axis spans fewer than two and would be left bare."""
     low, high = axis.get_view_interval()
-    if low > 0 and high / low < 100:
+    bare = low > 0 and high / low < 100
+    if bare:
         axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axis.set_minor_formatter(NullFormatter())
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}" if bare else _power_of_ten(value)))
+    axis.set_minor_formatter(NullFormatter())
+
+
+RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+
+def _power_of_ten(value):
+    return "10" + f"{np.log10(value):.0f}".translate(RAISED) if value > 0 else ""
 
 
 def draw_hypsometry(axes, sides):
@@ -79,7 +87,8 @@ def draw_slope_area(axes, side, fit=None, regression=None, theory=None, remark="
     axes.set(xscale="log", yscale="log", xlabel="Drainage area (m²)", ylabel="Slope (m/m)")
     if len(side.cloud[0]) or len(side.bins[0]):
         axes.legend(loc="lower left")
-        label_decades(axes.yaxis)
+        for axis in (axes.xaxis, axes.yaxis):
+            label_decades(axis)
     else:
         axes.set(xlim=(1e4, 1e8), ylim=(1e-3, 1))
         absent(axes, "no slopes measured")
@@ -236,6 +245,7 @@ def draw_history(height_axes, rate_axes, history):
              for name, word, line in (("max_rate_m_per_yr", "largest", "-"), ("mean_rate_m_per_yr", "mean", (0, (5, 1.6))))]
     if any(drawn):
         rate_axes.set_yscale("log")
+        label_decades(rate_axes.yaxis)
         _legend_above(rate_axes)
     else:
         absent(rate_axes, "no rates of change recorded")

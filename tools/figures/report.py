@@ -64,12 +64,12 @@ def terrains(study):
     both = maps.pair(real, synthetic)
     threshold = plain(get(study.measure, "channels.threshold_area_m2", 0) / 1e6)
     rivers = "all rivers" if lowest == 1 else f"rivers of Strahler order {lowest} and above"
-    return (picture(style.png(both, style.DPI), "png",
+    return (picture(style.png(both, palette=True), "png",
                     "Two shaded relief maps beside each other: the real terrain and the simulated one, with their rivers.",
                     "<b>Figure 1.</b> Real and synthetic terrain at one scale and one "
                     "range of colours, lit from the north-west. Blue: rivers, wider with Strahler order; dark lines: "
                     "outlines of the catchments. Ground outside the simulated outline is pale.")
-            + picture(style.png(overview, style.MAP_DPI), "png",
+            + picture(style.png(overview, palette=True), "png",
                       f"Shaded relief map of {study.name()} with {rivers} in blue and basin outlines in dark grey.",
                       f"<b>Figure 2.</b> The whole measured terrain with {rivers} (channels begin at {threshold} km²; wider "
                       "with order) and the outlines of its larger catchments"
@@ -96,7 +96,8 @@ def _slope_words(study, fitted):
     if fitted:
         words.append("Full line: the <b>fit</b> (robust: outlying bins pull less), with its 95 % band; it gives <i>k</i> and "
                      "<i>m</i>.")
-    words.append("Dashed line: the <b>regression</b>, plain least squares, made alike on both sides so that they can be compared.")
+    words.append("Dashed line: the <b>regression</b>, plain least squares, made alike on both sides so that they can be "
+                 "compared.")
     if study.theory:
         words.append("Dotted line: the steady state that the simulation aims at.")
     if study.no_theory:
@@ -318,7 +319,7 @@ def _sides_named(definition):
 
 
 ASPECTS = {"slope_area": "Slope–area", "horton": "Horton’s ratios"}
-QUANTITIES = {"theta": "θ, regression", "RB": "<i>R</i><sub>B</sub>"}
+QUANTITIES = {"theta": "θ, regression", "relief_m": "m", "RB": "<i>R</i><sub>B</sub>"}
 
 
 def _aspect_cell(study, aspect, key, footnotes):

@@ -32,7 +32,7 @@ def fitted(study):
     if fit.get("theta") is None:
         return ""
     text = (f"Slopes fall with drainage area to the power −{number(fit['theta'], 3)}"
-            + (f" ± {number(fit['theta_se'], 2)}" if fit.get("theta_se") else ""))
+            + (f" ± {number(fit['theta_se'], 2)}" if fit.get("theta_se") else "") + " (the fit’s θ)")
     if fit.get("k") is None or fit.get("m") is None:
         return text + "; without an uplift rate this does not tell <i>k</i>."
     given = f"; with uplift of {plain((fit.get('uplift_m_per_yr') or 0) * 1000)} mm/yr and <i>n</i> = {plain(fit.get('n'))}"

@@ -102,8 +102,7 @@ def run(command, folder):
     target = os.path.join(folder, "figures")
     os.makedirs(target, exist_ok=True)
     for name, drawing in FIGURES[command](folder):
-        dpi = style.MAP_DPI if name == "map" else style.DPI
-        write(os.path.join(target, name + ".png"), style.png(drawing, dpi))
+        write(os.path.join(target, name + ".png"), style.png(drawing, palette=name == "map"))
 
 
 def main(arguments):

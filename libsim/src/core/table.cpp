@@ -9,7 +9,11 @@ namespace thalweg {
 
 std::size_t row_count(const Table& table) {
     const bool has_geometry = table.kind != GeometryKind::no_geometry;
-    std::size_t rows = has_geometry ? table.geometry.size() : 0;
+    const bool has_polygons = table.kind == GeometryKind::polygon;
+    std::size_t rows = has_polygons ? table.polygons.size() : table.geometry.size();
+    if ((!has_polygons && !table.polygons.empty()) || ((has_polygons || !has_geometry) && !table.geometry.empty())) {
+        throw Error(fmt::format("table '{}' has geometry of another kind than it says", table.name));
+    }
     bool first = !has_geometry;
     for (const Column& column : table.columns) {
         const std::size_t size = std::visit([](const auto& values) { return values.size(); }, column.values);

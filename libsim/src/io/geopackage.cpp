@@ -43,7 +43,7 @@ OGRwkbGeometryType wkb_type(GeometryKind kind) {
         case GeometryKind::line:
             return wkbLineString;
         case GeometryKind::polygon:
-            return wkbPolygon;
+            return wkbMultiPolygon;
         case GeometryKind::no_geometry:
             break;
     }
@@ -58,17 +58,34 @@ void add_points(OGRSimpleCurve& curve, const std::vector<Point>& points) {
 std::unique_ptr<OGRGeometry> make_geometry(GeometryKind kind, const std::vector<Point>& points) {
     if (points.empty()) return nullptr;
     if (kind == GeometryKind::point) return std::make_unique<OGRPoint>(points[0].x, points[0].y);
-    if (kind == GeometryKind::line) {
-        auto line = std::make_unique<OGRLineString>();
-        add_points(*line, points);
-        return line;
-    }
+    auto line = std::make_unique<OGRLineString>();
+    add_points(*line, points);
+    return line;
+}
+
+void add_ring(OGRPolygon& polygon, const Polygon& points) {
     auto ring = std::make_unique<OGRLinearRing>();
     add_points(*ring, points);
     ring->closeRings();
-    auto polygon = std::make_unique<OGRPolygon>();
-    polygon->addRingDirectly(ring.release());
-    return polygon;
+    polygon.addRingDirectly(ring.release());
+}
+
+std::unique_ptr<OGRGeometry> make_geometry(const MultiPolygon& parts) {
+    if (parts.empty()) return nullptr;
+    auto surface = std::make_unique<OGRMultiPolygon>();
+    for (const PolygonPart& part : parts) {
+        auto polygon = std::make_unique<OGRPolygon>();
+        add_ring(*polygon, part.outer);
+        for (const Polygon& hole : part.holes) add_ring(*polygon, hole);
+        surface->addGeometryDirectly(polygon.release());
+    }
+    return surface;
+}
+
+std::unique_ptr<OGRGeometry> geometry_of(const Table& table, std::size_t row) {
+    if (table.kind == GeometryKind::no_geometry) return nullptr;
+    if (table.kind == GeometryKind::polygon) return make_geometry(table.polygons[row]);
+    return make_geometry(table.kind, table.geometry[row]);
 }
 
 OGRFieldType field_type(const Column& column) {
@@ -142,9 +159,7 @@ class PackageWriter {
             std::visit([&](const auto& values) { set_field(feature, field, values[row]); }, column.values);
             ++field;
         }
-        if (table.kind != GeometryKind::no_geometry) {
-            feature.SetGeometryDirectly(make_geometry(table.kind, table.geometry[row]).release());
-        }
+        if (auto geometry = geometry_of(table, row)) feature.SetGeometryDirectly(geometry.release());
         check(layer.CreateFeature(&feature));
     }
 

@@ -20,8 +20,15 @@ namespace {
 struct Corner {
     std::int64_t x;
     std::int64_t y;
+    bool pinched;  ///< a cell of the same label lies diagonally across, so that rings may come by twice
 };
 using CornerRing = std::vector<Corner>;
+
+struct CornerPart {
+    CornerRing outer;
+    std::vector<CornerRing> holes;
+};
+using CornerParts = std::vector<CornerPart>;
 
 /// Twice the area, positive where the ring runs counter-clockwise on the map (rows grow southward).
 std::int64_t doubled_area(const CornerRing& ring) {
@@ -35,38 +42,50 @@ std::int64_t doubled_area(const CornerRing& ring) {
 }
 
 /// Walks along the sides of cells of one label, the cell on the left. Heading 0 is east (along the cell's south side),
-/// then north, west, south. Cells that touch at a corner only are kept apart.
+/// then north, west, south. Cells that touch at a corner only are kept apart. Cells passed are told their part.
 class Tracer {
   public:
     Tracer(const Grid& grid, std::span<const Index> labels)
-        : rows_(grid.rows), cols_(grid.cols), labels_(labels), seen_(labels.size(), 0) {}
+        : rows_(grid.rows), cols_(grid.cols), labels_(labels), seen_(labels.size(), 0), part_(labels.size(), none) {}
 
     /// A side lies on an outline if the cell beyond it has another label, and is new if no ring has passed it.
-    bool is_new_side(std::int64_t row, std::int64_t col, int heading) const {
+    bool is_new_side(Index node, int heading) const {
         const auto [dy, dx] = beyond(heading);
-        const std::int64_t node = row * cols_ + col;
-        return !(seen_[node] & (1 << heading)) && !same(node, row + dy, col + dx);
+        return !(seen_[node] & (1 << heading)) && !same(node, node / cols_ + dy, node % cols_ + dx);
     }
 
-    CornerRing trace(std::int64_t row, std::int64_t col, int heading) {
+    /// The part a cell belongs to, if its western neighbour has been asked; none if it is a part's first cell. A ring's
+    /// highest sides are met first, so the ring west of a cell is known by the time the cell is reached.
+    Index part_of(Index node) {
+        if (part_[node] == none && node % cols_ > 0 && labels_[node - 1] == labels_[node])
+            part_[node] = part_[node - 1];
+        return part_[node];
+    }
+
+    CornerRing trace(Index start, int heading, Index part) {
         CornerRing ring;
+        std::int64_t row = start / cols_;
+        std::int64_t col = start % cols_;
         while (!(seen_[row * cols_ + col] & (1 << heading))) {
             const std::int64_t node = row * cols_ + col;
             seen_[node] |= static_cast<std::uint8_t>(1 << heading);
+            part_[node] = part;
             const auto [ahead_y, ahead_x] = ahead(heading);
             const auto [right_y, right_x] = beyond(heading);
-            const Corner corner = end_of_side(row, col, heading);
+            const auto [y, x] = end_of_side(row, col, heading);
+            const bool diagonal = same(node, row + ahead_y + right_y, col + ahead_x + right_x);
             if (!same(node, row + ahead_y, col + ahead_x)) {
-                ring.push_back(corner);
+                ring.push_back({x, y, diagonal});
                 heading = (heading + 1) % 4;
-            } else if (same(node, row + ahead_y + right_y, col + ahead_x + right_x)) {
-                ring.push_back(corner);
-                row += ahead_y + right_y;
-                col += ahead_x + right_x;
+                continue;
+            }
+            row += ahead_y;
+            col += ahead_x;
+            if (diagonal) {
+                ring.push_back({x, y, false});
+                row += right_y;
+                col += right_x;
                 heading = (heading + 3) % 4;
-            } else {
-                row += ahead_y;
-                col += ahead_x;
             }
         }
         return ring;
@@ -80,9 +99,9 @@ class Tracer {
     }
     static Step beyond(int heading) { return ahead((heading + 3) % 4); }
 
-    static Corner end_of_side(std::int64_t row, std::int64_t col, int heading) {
+    static Step end_of_side(std::int64_t row, std::int64_t col, int heading) {
         constexpr std::array<Step, 4> ends{{{1, 1}, {0, 1}, {0, 0}, {1, 0}}};
-        return {col + ends[heading][1], row + ends[heading][0]};
+        return {row + ends[heading][0], col + ends[heading][1]};
     }
 
     bool same(std::int64_t node, std::int64_t row, std::int64_t col) const {
@@ -93,28 +112,58 @@ class Tracer {
     std::int64_t cols_;
     std::span<const Index> labels_;
     std::vector<std::uint8_t> seen_;  ///< per cell one bit per side
+    std::vector<Index> part_;         ///< per cell, filled row by row and along rings
 };
 
-/// The largest piece of a ring that may pass a corner twice, cut where it does: a simple polygon.
-CornerRing largest_simple_piece(const CornerRing& ring, std::int64_t cols) {
+/// Cuts a ring where it passes a corner again. Of an outer ring come an outer ring and the holes that opened to the
+/// outside at a corner; of a hole come holes: the cells hang together, so no piece is a second outside.
+std::vector<CornerRing> simple_pieces(const CornerRing& ring, std::int64_t cols) {
     std::unordered_map<std::int64_t, std::size_t> place;
-    CornerRing path, best;
-    const auto keep = [&](CornerRing piece) {
-        if (best.empty() || doubled_area(piece) > doubled_area(best)) best = std::move(piece);
-    };
+    std::vector<CornerRing> pieces;
+    CornerRing path;
     for (const Corner& corner : ring) {
-        const std::int64_t key = corner.y * (cols + 1) + corner.x;
-        if (const auto found = place.find(key); found != place.end()) {
+        const auto key = [&](const Corner& c) { return c.y * (cols + 1) + c.x; };
+        if (const auto found = place.find(key(corner)); corner.pinched && found != place.end()) {
             const std::size_t first = found->second;
-            keep({path.begin() + static_cast<std::ptrdiff_t>(first), path.end()});
-            for (std::size_t i = first; i < path.size(); ++i) place.erase(path[i].y * (cols + 1) + path[i].x);
+            for (std::size_t i = first; i < path.size(); ++i) {
+                if (path[i].pinched) place.erase(key(path[i]));
+            }
+            pieces.emplace_back(path.begin() + static_cast<std::ptrdiff_t>(first), path.end());
             path.resize(first);
         }
-        place[key] = path.size();
+        if (corner.pinched) place[key(corner)] = path.size();
         path.push_back(corner);
     }
-    keep(path);
-    return best;
+    pieces.push_back(std::move(path));
+    return pieces;
+}
+
+/// The parts of each label, row by row. Every ring has sides to the north or south, so these are all that is looked at.
+std::vector<CornerParts> trace_parts(const Grid& grid, std::span<const Index> labels, Index count) {
+    constexpr int along_north_side = 2;
+    constexpr int along_south_side = 0;
+    Tracer tracer(grid, labels);
+    std::vector<CornerParts> parts(count);
+    for (Index node = 0; node < grid.size(); ++node) {
+        if (labels[node] >= count) continue;
+        CornerParts& own = parts[labels[node]];
+        Index part = tracer.part_of(node);
+        if (part == none) {
+            part = static_cast<Index>(own.size());
+            own.emplace_back();
+        }
+        for (const int heading : {along_north_side, along_south_side}) {
+            if (!tracer.is_new_side(node, heading)) continue;
+            for (CornerRing& piece : simple_pieces(tracer.trace(node, heading, part), grid.cols)) {
+                if (doubled_area(piece) > 0) {
+                    own[part].outer = std::move(piece);
+                } else {
+                    own[part].holes.push_back(std::move(piece));
+                }
+            }
+        }
+    }
+    return parts;
 }
 
 Polygon on_map(const CornerRing& ring, const Placement& placement) {
@@ -143,27 +192,17 @@ double ring_area(const Polygon& ring) {
 
 }  // namespace
 
-std::vector<Polygon> cell_outlines(const Raster& frame, std::span<const Index> labels, Index count) {
+std::vector<MultiPolygon> cell_outlines(const Raster& frame, std::span<const Index> labels, Index count) {
     check_labels(frame, labels);
-    const Grid& grid = frame.grid;
-    Tracer tracer(grid, labels);
-    std::vector<CornerRing> best(count);
-    std::vector<std::int64_t> largest(count, 0);
-    for (Index node = 0; node < grid.size(); ++node) {
-        const Index label = labels[node];
-        if (label >= count) continue;
-        // The first side met of an outer ring is a north side of its northernmost row: heading west.
-        if (!tracer.is_new_side(grid.row(node), grid.col(node), 2)) continue;
-        CornerRing ring = tracer.trace(grid.row(node), grid.col(node), 2);
-        if (doubled_area(ring) <= 0) continue;
-        ring = largest_simple_piece(ring, grid.cols);
-        if (const std::int64_t area = doubled_area(ring); area > largest[label]) {
-            largest[label] = area;
-            best[label] = std::move(ring);
+    std::vector<MultiPolygon> outlines(count);
+    const std::vector<CornerParts> traced = trace_parts(frame.grid, labels, count);
+    for (Index label = 0; label < count; ++label) {
+        for (const CornerPart& part : traced[label]) {
+            PolygonPart& placed = outlines[label].emplace_back();
+            placed.outer = on_map(part.outer, frame.placement);
+            for (const CornerRing& hole : part.holes) placed.holes.push_back(on_map(hole, frame.placement));
         }
     }
-    std::vector<Polygon> outlines(count);
-    for (Index label = 0; label < count; ++label) outlines[label] = on_map(best[label], frame.placement);
     return outlines;
 }
 
@@ -173,7 +212,12 @@ Polygon cell_outline(const Raster& frame, std::span<const Index> labels, Index l
     for (std::size_t i = 0; i < labels.size(); ++i) {
         if (labels[i] == label) chosen[i] = 0;
     }
-    return cell_outlines(frame, chosen, 1).front();
+    const CornerParts parts = trace_parts(frame.grid, chosen, 1).front();
+    const auto smaller = [](const CornerPart& a, const CornerPart& b) {
+        return doubled_area(a.outer) < doubled_area(b.outer);
+    };
+    const auto largest = std::max_element(parts.begin(), parts.end(), smaller);
+    return largest == parts.end() ? Polygon{} : on_map(largest->outer, frame.placement);
 }
 
 Polygon simplify(const Polygon& polygon, double tolerance) {

@@ -82,7 +82,7 @@ Table junctions_table(const Statistics& s, const PositionOf& position) {
     return table;
 }
 
-Table basins_table(const Statistics& s, const PositionOf& position, std::vector<Polygon> outlines) {
+Table basins_table(const Statistics& s, const PositionOf& position, std::vector<MultiPolygon> outlines) {
     Wholes id;
     for (std::size_t b = 0; b < s.basins.size(); ++b) id.push_back(static_cast<std::int64_t>(b));
     const auto& rows = s.basins;
@@ -96,7 +96,8 @@ Table basins_table(const Statistics& s, const PositionOf& position, std::vector<
                         {"hypsometric_integral", column_of(rows, [](const auto& r) { return r.hypsometric_integral; })},
                         {"max_strahler", column_of(rows, [](const auto& r) { return std::int64_t{r.max_strahler}; })}},
             .kind = GeometryKind::polygon,
-            .geometry = std::move(outlines)};
+            .geometry = {},
+            .polygons = std::move(outlines)};
 }
 
 Table hypsometry_table(const terrain::Hypsometry& h) {

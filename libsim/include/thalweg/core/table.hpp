@@ -19,15 +19,18 @@ struct Column {
 enum class GeometryKind { no_geometry, point, line, polygon };
 
 /// Named columns of equal length, with one geometry per row where `kind` asks for it: what statistics fill and `io`
-/// writes as CSV or as a GeoPackage layer. A point is one vertex, a line two or more, a polygon an outer ring.
+/// writes as CSV or as a GeoPackage layer. Points (one vertex) and lines (two or more) are held by `geometry`, polygons
+/// by `polygons`; whichever `kind` does not ask for is empty.
 struct Table {
     std::string name;
     std::vector<Column> columns;
     GeometryKind kind = GeometryKind::no_geometry;
     std::vector<std::vector<Point>> geometry;
+    std::vector<MultiPolygon> polygons = {};
 };
 
-/// Number of rows. Throws Error if the columns (or the geometry) are of unequal length.
+/// Number of rows. Throws Error if the columns (or the geometry) are of unequal length, or if there is geometry that
+/// `kind` does not ask for.
 std::size_t row_count(const Table& table);
 
 }  // namespace thalweg

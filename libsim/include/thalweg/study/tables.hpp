@@ -20,7 +20,7 @@ Table links_table(const channel::StreamNetwork&, const PositionOf&);
 Table junctions_table(const Statistics&, const PositionOf&);
 
 /// Layer `basins`: one polygon per basin of the statistics; `outlines[i]` belongs to basin i.
-Table basins_table(const Statistics&, const PositionOf&, std::vector<Polygon> outlines);
+Table basins_table(const Statistics&, const PositionOf&, std::vector<MultiPolygon> outlines);
 
 /// hypsometry.csv, slope_area.csv (the bins) and slope_area_points.csv.
 Table hypsometry_table(const terrain::Hypsometry&);
