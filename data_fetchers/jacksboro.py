@@ -87,6 +87,7 @@ def provenance(source, target, heights, west, north, cell, landmarks):
         "title": "Jacksboro fault, Pine Mountain and Norris Lake, Cumberland Mountains, Tennessee",
         "data": "Shuttle Radar Topography Mission (SRTM), 3 arc-seconds, NASA and USGS, flown in February 2000",
         "licence": "public domain (SRTM)",
+        "citation": "NASA Shuttle Radar Topography Mission (SRTM), 3 arc-seconds, flown in February 2000",
         "obtained_from": "Debian package python-matplotlib-data, file " + SOURCE,
         "added_there_by": "https://github.com/matplotlib/matplotlib/pull/3291 (SRTM elevation data, public domain)",
         "source_sha256": sha256(source),

@@ -59,6 +59,7 @@ void add_simulate(CLI::App&);
 void add_fit(CLI::App&);
 void add_compare(CLI::App&);
 void add_run(CLI::App&);
+void add_fetch(CLI::App&);
 void add_version(CLI::App&);
 
 }  // namespace thalweg::tools

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "interrupt.hpp"
 
-#include "thalweg/study/figure.hpp"
+#include "thalweg/study/script.hpp"
 
 #include <pthread.h>
 #include <signal.h>
@@ -26,7 +26,7 @@ void watch(study::OutputFolder& folder) {
     int sign = 0;
     sigwait(&set, &sign);
     if (sign == leave) return;
-    study::stop_drawing();
+    study::stop_script();
     folder.discard();
     std::cerr << "thalweg: error: stopped by a signal; nothing was written" << std::endl;
     ::_exit(128 + sign);
@@ -39,6 +39,13 @@ void hold_back_signals() {
     pthread_sigmask(SIG_BLOCK, &set, nullptr);
     ::signal(SIGXFSZ, SIG_IGN);
     ::signal(SIGPIPE, SIG_IGN);
+}
+
+void let_signals_through() {
+    const sigset_t set = watched_signals();
+    pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
+    ::signal(SIGXFSZ, SIG_DFL);
+    ::signal(SIGPIPE, SIG_DFL);
 }
 
 InterruptGuard::InterruptGuard(study::OutputFolder& folder) : watcher_([&folder] { watch(folder); }) {}

@@ -11,6 +11,9 @@ namespace thalweg::tools {
 /// failed write, and Ctrl-C and its like wait for a guard.
 void hold_back_signals();
 
+/// Takes that back, for a program that is about to become another.
+void let_signals_through();
+
 /// While it lives, SIGINT, SIGTERM and SIGHUP discard the folder, say so in one line, and end the program with 128 plus
 /// the signal's number.
 class InterruptGuard {

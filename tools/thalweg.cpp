@@ -15,6 +15,7 @@
 namespace {
 
 constexpr int users_to_mend = 2;
+constexpr int servers_to_mend = 3;
 constexpr int ours_to_mend = 1;
 
 /// One line, whatever the message holds.
@@ -59,7 +60,8 @@ int parse_and_run(int argc, char** argv) {
     app.require_subcommand(1);
     app.failure_message([](const CLI::App*, const CLI::Error& error) { return std::string(error.what()); });
     for (const auto add : {thalweg::tools::add_analyze, thalweg::tools::add_simulate, thalweg::tools::add_fit,
-                           thalweg::tools::add_compare, thalweg::tools::add_run, thalweg::tools::add_version}) {
+                           thalweg::tools::add_compare, thalweg::tools::add_run, thalweg::tools::add_fetch,
+                           thalweg::tools::add_version}) {
         add(app);
     }
     refuse_unknown_command(app, argc, argv);
@@ -79,6 +81,8 @@ int main(int argc, char** argv) {
     thalweg::tools::hold_back_signals();
     try {
         return parse_and_run(argc, argv);
+    } catch (const thalweg::RemoteError& error) {
+        return fail(servers_to_mend, error.what());
     } catch (const thalweg::Error& error) {
         return fail(users_to_mend, error.what());
     } catch (const std::bad_alloc&) {

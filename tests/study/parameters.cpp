@@ -114,6 +114,25 @@ TEST_CASE("Paths are relative to the experiment file") {
     CHECK(e.domain.dem == folder / "data/x.tif");
 }
 
+TEST_CASE("A source and a box read back as they were written, and must be a word and four degrees") {
+    const Experiment e = read("[study]\nsource = \"opentopography:NASADEM\"\nbbox = [-84.5, 36, -84, 36.25]\n");
+    CHECK(e.study.source == "opentopography:NASADEM");
+    CHECK(e.study.bbox == std::array{-84.5, 36.0, -84.0, 36.25});
+    const Experiment again = read(to_toml(e));
+    CHECK(again.study.source == e.study.source);
+    CHECK(again.study.bbox == e.study.bbox);
+    CHECK(refusal("[study]\nsource = 3").find("study.source") != std::string::npos);
+    CHECK(refusal("[study]\nbbox = [1, 2, 3]").find("four numbers") != std::string::npos);
+    CHECK(refusal("[study]\nbbox = [1, 2, 300, 4]").find("180") != std::string::npos);
+}
+
+TEST_CASE("A path that is relative in memory is written as it is, one that was read from a file whole") {
+    Experiment e = read("[domain]\ndem = \"x.tif\"");
+    CHECK(e.domain.dem->is_absolute());
+    e.domain.dem = "../fetch/x.tif";
+    CHECK(to_toml(e).find("../fetch/x.tif") == to_toml(e).find("dem = ") + 7);
+}
+
 TEST_CASE("An unknown key is refused with the nearest one that exists") {
     CHECK(refusal("[river]\nerodability = 1\n").find("river.") != std::string::npos);
     CHECK(refusal("[river]\nkk = 1\n").find("'river.k'") != std::string::npos);

@@ -244,6 +244,27 @@ TEST_CASE("A DEM may be the start of a simulation") {
     }
 }
 
+TEST_CASE("The provenance beside a DEM is cited if it is about that very file") {
+    const TempFolder temp;
+    std::vector<std::string> warnings;
+    const auto origin = [&](const std::string& json) {
+        temp.text("dem.tif.json", json);
+        return origin_of(temp / "dem.tif", "abc", warnings);
+    };
+    CHECK_FALSE(origin_of(temp / "dem.tif", "abc", warnings));
+    CHECK_FALSE(origin("not JSON"));
+    CHECK_FALSE(origin("[1, 2]"));
+    CHECK_FALSE(origin(R"({"licence": "somebody else's file"})"));
+    CHECK(warnings.empty());
+    const auto found = origin(R"({"sha256": "abc", "data": "SRTM", "licence": "public domain", "citation": 3})");
+    REQUIRE(found);
+    CHECK(found->title == "SRTM");
+    CHECK(found->licence == "public domain");
+    CHECK(found->citation.empty());
+    CHECK_FALSE(origin(R"({"sha256": "abd", "data": "SRTM"})"));
+    CHECK(warnings.size() == 1);
+}
+
 TEST_CASE("Experiments that contradict themselves are refused with a sentence") {
     const TempFolder temp;
     const auto refusal = [&](auto change) {
@@ -266,6 +287,11 @@ TEST_CASE("Experiments that contradict themselves are refused with a sentence") 
     Experiment study;
     CHECK(error_of([&] { run_study(study, Figures::leave_out, temp / "", {}); }).find("study.dem") !=
           std::string::npos);
+    study.study.source = "copernicus-glo90";
+    CHECK(error_of([&] { run_study(study, Figures::leave_out, temp / "", {}); }).find("study.bbox") !=
+          std::string::npos);
     study.study.dem = jacksboro;
+    CHECK(error_of([&] { run_study(study, Figures::leave_out, temp / "", {}); }).find("exclude") != std::string::npos);
+    study.study.source.reset();
     CHECK(error_of([&] { run_study(study, Figures::leave_out, temp / "", {}); }).find("uplift") != std::string::npos);
 }

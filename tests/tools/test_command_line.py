@@ -62,7 +62,7 @@ class CommandLine(unittest.TestCase):
 
     def test_help_and_version_explain_themselves(self):
         self.assertIn("analyze", thalweg("--help").stdout)
-        for command in ("analyze", "simulate", "fit", "compare", "run"):
+        for command in ("analyze", "simulate", "fit", "compare", "run", "fetch"):
             result = thalweg(command, "--help")
             self.assertEqual(result.returncode, 0)
             self.assertIn("--out", result.stdout)

@@ -357,6 +357,10 @@ UNSHOWN = ("seconds", "timing", "date", "time", "threads", "input", "outputs", "
 def provenance(study):
     rows = [[label, show(get(study.measure, path))] for label, path in
             (("DEM", "input.file"), ("SHA-256", "input.sha256"), ("Coordinate system", "input.crs"))]
+    rows += [[label, show(found)] for label, found in
+             ((label, get(study.measure, f"input.provenance.{key}")) for label, key in
+              (("Data", "title"), ("Obtained from", "obtained_from"), ("Heights", "vertical"), ("Licence", "licence"),
+               ("Please cite", "citation"))) if found]
     grid = [get(study.measure, f"input.{key}") for key in ("rows", "cols", "dx_m", "dy_m")]
     if None not in grid:
         rows.append(["Grid", f"{grid[0]} × {grid[1]} cells of {number(grid[2], 4)} × {number(grid[3], 4)} m"])

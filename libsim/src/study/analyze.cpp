@@ -27,7 +27,8 @@ TerrainInput input_of(const NamedRaster& dem, const RasterMeasurement& m) {
             .dy_m = mean(grid.north_south),
             .valid_cells = m.valid_cells,
             .nodata_cells = grid.size() - m.valid_cells,
-            .area_m2 = m.area_m2};
+            .area_m2 = m.area_m2,
+            .origin = dem.origin};
 }
 
 Json conditioning_json(const ConditioningReport& c, Conditioning method) {
@@ -95,12 +96,15 @@ void write_tables(const Raster& dem, const Statistics& s, const std::filesystem:
 NamedRaster read_dem(const std::filesystem::path& path, const io::ReadOptions& options, const Messages& messages) {
     messages.progress(fmt::format("reading {}", path.string()));
     io::ReadResult result = io::read_raster(path, options);
+    const std::string sha256 = sha256_of(path);
+    const std::optional<Origin> origin = origin_of(path, sha256, result.warnings);
     for (const std::string& warning : result.warnings) messages.warning(warning);
     return {.raster = std::move(result.raster),
             .file = path.filename().string(),
-            .sha256 = sha256_of(path),
+            .sha256 = sha256,
             .crs_name = result.crs_name,
-            .warnings = std::move(result.warnings)};
+            .warnings = std::move(result.warnings),
+            .origin = origin};
 }
 
 std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const std::filesystem::path& folder,

@@ -164,6 +164,14 @@ class Reader {
         member = *text;
     }
 
+    void read(const Field& field, const toml::node& node, std::array<double, 4>& member) const {
+        const toml::array* array = node.as_array();
+        if (array == nullptr || array->size() != member.size()) {
+            throw Error(fmt::format("{} must be four numbers in brackets, not {}", field.key, quoted(node)));
+        }
+        for (std::size_t i = 0; i < member.size(); ++i) read(field, (*array)[i], member[i]);
+    }
+
     void read(const Field& field, const toml::node& node, std::vector<double>& member) const {
         const toml::array* array = node.as_array();
         if (array == nullptr || array->size() != 2) {
@@ -204,14 +212,14 @@ void apply_override(toml::table& table, const std::string& text) {
 }
 
 std::string shown(double value) { return fmt::format("{}", value); }
-std::string shown(const std::string& value) {
+std::string shown(const std::string& word) {
     std::ostringstream text;
-    text << toml::value<std::string>(value);
+    text << toml::value<std::string>(word);
     return text.str();
 }
-std::string shown(const std::filesystem::path& path) {
-    return shown(std::filesystem::absolute(path).lexically_normal().string());
-}
+/// What was read from a file is absolute; a relative path is meant from where the experiment will lie.
+std::string shown(const std::filesystem::path& path) { return shown(path.lexically_normal().string()); }
+std::string shown(const std::array<double, 4>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 std::string shown(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 template <class Whole>
 requires std::is_unsigned_v<Whole> std::string shown(Whole value) { return fmt::format("{}", value); }

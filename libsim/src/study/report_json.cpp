@@ -15,20 +15,22 @@ Json whole_or_null(Index value) { return value > 0 ? Json(value) : Json(nullptr)
 Json text_or_null(const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); }
 
 Json input_json(const TerrainInput& input, const terrain::Hypsometry& h) {
-    return {{"file", text_or_null(input.file)},
-            {"sha256", text_or_null(input.sha256)},
-            {"crs", text_or_null(input.crs)},
-            {"geographic", input.geographic},
-            {"rows", whole_or_null(input.rows)},
-            {"cols", whole_or_null(input.cols)},
-            {"dx_m", input.dx_m > 0 ? Json(input.dx_m) : Json(nullptr)},
-            {"dy_m", input.dy_m > 0 ? Json(input.dy_m) : Json(nullptr)},
-            {"valid_cells", input.valid_cells},
-            {"nodata_cells", input.nodata_cells},
-            {"area_m2", input.area_m2},
-            {"elevation_min_m", number(h.minimum_m)},
-            {"elevation_max_m", number(h.maximum_m)},
-            {"elevation_mean_m", number(h.mean_m)}};
+    Json json{{"file", text_or_null(input.file)},
+              {"sha256", text_or_null(input.sha256)},
+              {"crs", text_or_null(input.crs)},
+              {"geographic", input.geographic},
+              {"rows", whole_or_null(input.rows)},
+              {"cols", whole_or_null(input.cols)},
+              {"dx_m", input.dx_m > 0 ? Json(input.dx_m) : Json(nullptr)},
+              {"dy_m", input.dy_m > 0 ? Json(input.dy_m) : Json(nullptr)},
+              {"valid_cells", input.valid_cells},
+              {"nodata_cells", input.nodata_cells},
+              {"area_m2", input.area_m2},
+              {"elevation_min_m", number(h.minimum_m)},
+              {"elevation_max_m", number(h.maximum_m)},
+              {"elevation_mean_m", number(h.mean_m)}};
+    if (input.origin) json["provenance"] = origin_json(*input.origin);
+    return json;
 }
 
 Json hypsometry_json(const terrain::Hypsometry& h) {
@@ -146,6 +148,14 @@ Json numbers(std::span<const double> values) {
     Json list = Json::array();
     for (const double value : values) list.push_back(number(value));
     return list;
+}
+
+Json origin_json(const Origin& origin) {
+    return {{"title", origin.title},
+            {"obtained_from", origin.obtained_from},
+            {"vertical", origin.vertical},
+            {"licence", origin.licence},
+            {"citation", origin.citation}};
 }
 
 Json interval(const Estimate& estimate) {

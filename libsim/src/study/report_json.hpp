@@ -5,9 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "thalweg/study/analyze.hpp"
 #include "thalweg/study/measure.hpp"
 #include "thalweg/study/tables.hpp"
 
@@ -32,7 +34,11 @@ struct TerrainInput {
     double dx_m = 0, dy_m = 0;  ///< mean size of a cell; 0 on a TIN
     Index valid_cells = 0, nodata_cells = 0;
     double area_m2 = 0;
+    std::optional<Origin> origin;
 };
+
+/// Title, licence and citation of a DEM.
+Json origin_json(const Origin&);
 
 /// The keys of an `analyze` summary. `conditioning` may be null (a mesh needs none). Reasons for nulls go to `notes`.
 Json terrain_json(const TerrainInput&, const Statistics&, const PositionOf&, Json conditioning,

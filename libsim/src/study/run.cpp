@@ -10,6 +10,7 @@
 #include "study/report_json.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/study/compare.hpp"
+#include "thalweg/study/fetch.hpp"
 #include "thalweg/study/figure.hpp"
 #include "thalweg/study/fit.hpp"
 #include "thalweg/study/manifest.hpp"
@@ -27,7 +28,8 @@ fs::path step_folder(const fs::path& folder, const char* step) {
 }
 
 /// The experiment that simulates what was fitted: the study's uplift and the fitted k and m on the DEM's own raster.
-Experiment fitted_experiment(const Experiment& study, const infer::SlopeAreaFit& fit) {
+/// A fetched DEM is named as it lies beside the simulation's folder, so that the study can be moved.
+Experiment fitted_experiment(const Experiment& study, const fs::path& dem, const infer::SlopeAreaFit& fit) {
     if (!(fit.k && fit.k->value > 0 && fit.m.value > 0)) {
         throw Error(
             fmt::format("the fit gives m = {:.3g}, with which no landscape can be simulated: slopes do not "
@@ -35,7 +37,7 @@ Experiment fitted_experiment(const Experiment& study, const infer::SlopeAreaFit&
                         fit.m.value));
     }
     Experiment e = study;
-    e.domain.dem = study.study.dem;
+    e.domain.dem = study.study.dem ? *study.study.dem : fs::path("..") / dem;
     e.domain.mesh = study.domain.mesh.value_or(MeshKind::raster);
     e.uplift.rate_m_per_yr = *study.study.uplift_m_per_yr;
     e.river.k = fit.k->value;
@@ -102,15 +104,36 @@ Json manifest_json(const Experiment& e, const NamedRaster& dem, const fs::path& 
     const Versions v = versions();
     Json libraries;
     for (const auto& [name, version] : v.libraries) libraries[name] = version;
+    Json input{{"file", dem.file}, {"sha256", dem.sha256}, {"crs", dem.crs_name}};
+    if (dem.origin) input["provenance"] = origin_json(*dem.origin);
+    Json steps{"measure", "basin", "fit", "simulate", "synthetic", "compare"};
+    if (e.study.source) steps.insert(steps.begin(), "fetch");
     return {{"program", "thalweg"},
             {"version", v.thalweg},
             {"commit", v.commit},
             {"libraries", libraries},
             {"command", "thalweg run experiment.toml"},
             {"seed", e.seed},
-            {"input", {{"file", dem.file}, {"sha256", dem.sha256}, {"crs", dem.crs_name}}},
-            {"steps", {"measure", "basin", "fit", "simulate", "synthetic", "compare"}},
+            {"input", input},
+            {"steps", steps},
             {"outputs", checksums(folder)}};
+}
+
+void check_dem_is_named(const Experiment& e) {
+    if (e.study.dem && e.study.source) throw Error("study.dem and study.source exclude each other: give one of them");
+    if (!e.study.dem && !e.study.source) {
+        throw Error("study.dem is needed: the DEM to be explained (or study.source and study.bbox)");
+    }
+    if (e.study.source && !e.study.bbox) {
+        throw Error("study.bbox is needed with study.source: west, south, east and north in degrees");
+    }
+}
+
+/// The study's DEM: the file it names, or what its source has for its box, which then is a part of the study.
+fs::path dem_of(const Experiment& e, const fs::path& folder, const Messages& messages) {
+    if (e.study.dem) return *e.study.dem;
+    messages.progress(fmt::format("fetching {}", *e.study.source));
+    return fetch_dem(*e.study.source, *e.study.bbox, step_folder(folder, "fetch"));
 }
 
 void draw_all(const fs::path& folder, const Messages& messages) {
@@ -121,8 +144,7 @@ void draw_all(const fs::path& folder, const Messages& messages) {
 }  // namespace
 
 std::string run_study(const Experiment& e, Figures figures, const fs::path& folder, const Messages& messages) {
-    if (!e.study.dem)
-        throw Error("study.dem is needed: the DEM to be explained (thalweg simulate runs an experiment that has none)");
+    check_dem_is_named(e);
     if (!e.study.uplift_m_per_yr) {
         throw Error("study.uplift_m_per_yr is needed: slopes alone tell only k/u, and a simulation needs both");
     }
@@ -130,17 +152,19 @@ std::string run_study(const Experiment& e, Figures figures, const fs::path& fold
     write_text(folder / "experiment.toml", to_toml(resolved(e)));
     MeasureOptions options;
     options.channel_area_m2 = e.study.channel_area_m2;
-    const NamedRaster dem = read_dem(*e.study.dem, {.nodata = e.study.nodata, .crs = e.study.crs}, messages);
+    const fs::path dem_file = dem_of(e, folder, messages);
+    const NamedRaster dem = read_dem(dem_file, {.nodata = e.study.nodata, .crs = e.study.crs}, messages);
     analyze(dem, options, step_folder(folder, "measure"), messages);
 
     const Catchment catchment = largest_complete_catchment(dem.raster, options);
     options.catchment_outlet = catchment.outlet;
     if (!options.channel_area_m2) options.channel_area_m2 = catchment_channel_area(catchment.raster);
-    NamedRaster basin{catchment.raster, dem.file, dem.sha256, dem.crs_name, {}};
+    NamedRaster basin{catchment.raster, dem.file, dem.sha256, dem.crs_name, {}, dem.origin};
     analyze(basin, options, step_folder(folder, "basin"), messages);
 
     const FitOutcome fitted = fit(folder / "basin", fit_options(e), step_folder(folder, "fit"), messages);
-    simulate(fitted_experiment(e, fitted.fit), catchment, step_folder(folder, "simulate"), messages);
+    simulate(fitted_experiment(e, fs::relative(dem_file, folder), fitted.fit), catchment,
+             step_folder(folder, "simulate"), messages);
 
     const NamedRaster synthetic = read_dem(folder / "simulate/elevation.tif", {}, {});
     analyze(synthetic, options, step_folder(folder, "synthetic"), messages);

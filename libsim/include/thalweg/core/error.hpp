@@ -12,4 +12,10 @@ class Error : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// A remote server that failed where the user did nothing wrong. The command line exits with 3.
+class RemoteError : public Error {
+  public:
+    using Error::Error;
+};
+
 }  // namespace thalweg

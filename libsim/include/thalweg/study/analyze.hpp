@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,16 @@ struct Messages {
     std::function<void(const std::string&)> warning = [](const std::string&) {};
 };
 
+/// Where a DEM comes from, as the provenance that `thalweg fetch` writes beside it says.
+struct Origin {
+    std::string title, licence, citation, vertical, obtained_from;
+};
+
+/// What FILE.json beside a DEM says of it. Nothing where there is no such file or it is no provenance; nothing and a
+/// warning where it is about a file with another checksum.
+std::optional<Origin> origin_of(const std::filesystem::path& dem, const std::string& sha256,
+                                std::vector<std::string>& warnings);
+
 /// A DEM as it was read, with what the manifest and the summary say of it.
 struct NamedRaster {
     Raster raster;
@@ -24,6 +35,7 @@ struct NamedRaster {
     std::string sha256;
     std::string crs_name;
     std::vector<std::string> warnings;
+    std::optional<Origin> origin;
 };
 
 /// Reads a DEM and its checksum; warnings go to `messages`.

@@ -11,7 +11,4 @@ namespace thalweg::study {
 /// Throws Error if they cannot run, with what they said.
 void draw_figures(const std::string& what, const std::filesystem::path& folder);
 
-/// Ends a drawing that is under way, for a program that is being stopped. May be called from any thread.
-void stop_drawing();
-
 }  // namespace thalweg::study

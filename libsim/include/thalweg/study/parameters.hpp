@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <limits>
@@ -66,8 +67,10 @@ struct Experiment {
     } output;
     struct {
         std::optional<std::filesystem::path> dem;
-        std::string crs;               ///< replaces the DEM's own
-        std::optional<double> nodata;  ///< besides what the DEM declares
+        std::optional<std::string> source;          ///< of the fetcher's catalogue, instead of a DEM
+        std::optional<std::array<double, 4>> bbox;  ///< west, south, east, north (degrees)
+        std::string crs;                            ///< replaces the DEM's own
+        std::optional<double> nodata;               ///< besides what the DEM declares
         std::optional<double> uplift_m_per_yr;
         double uplift_sd_m_per_yr = 0;
         FitMethod method = FitMethod::slope_area;
@@ -142,7 +145,11 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"output.resolution", "", "cells along the longer side of a TIN's heightfield; default 512", 2, 100000},
           e.output.resolution);
     visit(Field{"output.interpolation", "", "how a TIN becomes a heightfield"}, e.output.interpolation);
-    visit(Field{"study.dem", "", "the DEM to be explained; a study needs it"}, e.study.dem);
+    visit(Field{"study.dem", "", "the DEM to be explained; a study needs it or a source"}, e.study.dem);
+    visit(Field{"study.source", "", "where to fetch the DEM from, instead of study.dem (thalweg fetch --help)"},
+          e.study.source);
+    visit(Field{"study.bbox", "degrees", "west, south, east and north edge of what is fetched", -180, 180},
+          e.study.bbox);
     visit(Field{"study.crs", "", "coordinate system to use instead of the DEM's, e.g. EPSG:32611"}, e.study.crs);
     visit(Field{"study.nodata", "m", "value to be taken as no data, besides what the DEM declares"}, e.study.nodata);
     visit(Field{"study.uplift_m_per_yr", "m/yr",
