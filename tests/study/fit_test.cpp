@@ -150,8 +150,9 @@ TEST_CASE("The fit of a study is that of its basin with the study's exponent, up
     e.study.dem = temp / "land/elevation.tif";
     e.study.uplift_m_per_yr = uplift;
     e.study.uplift_sd_m_per_yr = 1e-4;
-    e.study.area_min_m2 = 3e5;
-    e.study.area_max_m2 = 2e7;
+    e.study.channel_area_m2 = 2e5;
+    e.study.area_min_m2 = 1e6;
+    e.study.area_max_m2 = 1e7;
     e.river.n = 2;
     std::filesystem::create_directory(temp / "study");
     run_study(e, Figures::leave_out, temp / "study", {});
@@ -161,14 +162,14 @@ TEST_CASE("The fit of a study is that of its basin with the study's exponent, up
     options.fit.n = 2;
     options.fit.uplift_m_per_yr = uplift;
     options.fit.uplift_sd_m_per_yr = 1e-4;
-    options.fit.area_min_m2 = 3e5;
-    options.fit.area_max_m2 = 2e7;
+    options.fit.area_min_m2 = 1e6;
+    options.fit.area_max_m2 = 1e7;
     const Json alone = fitted(temp / "study/basin", temp / "fit", options);
     CHECK(in_study == alone);
     CHECK(in_study["n"] == 2.0);
     CHECK(in_study["uplift_sd_m_per_yr"] == 1e-4);
-    CHECK(in_study["area_range_m2"][0].get<double>() >= 3e5);
-    CHECK(in_study["area_range_m2"][1].get<double>() <= 2e7);
+    CHECK(in_study["area_range_m2"][0].get<double>() >= 1e6);
+    CHECK(in_study["area_range_m2"][1].get<double>() <= 1e7);
 
     // What was simulated is what was fitted.
     const Experiment simulated = read_experiment(temp / "study/simulate/experiment.toml");
