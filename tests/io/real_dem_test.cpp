@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "thalweg/io/geodesy.hpp"
+#include "thalweg/io/polygonize.hpp"
 #include "thalweg/io/raster_file.hpp"
 
 using namespace thalweg;
@@ -55,6 +56,17 @@ double extent_area(const Raster& raster, Index points) {
     return io::geodesic_area(ring);
 }
 
+/// Positive where the ring runs counter-clockwise; measured from its first vertex to keep the digits.
+double ring_area(const Polygon& ring) {
+    double doubled = 0;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Point& a = ring[i];
+        const Point& b = ring[(i + 1) % ring.size()];
+        doubled += (a.x - ring[0].x) * (b.y - ring[0].y) - (b.x - ring[0].x) * (a.y - ring[0].y);
+    }
+    return doubled / 2;
+}
+
 void check(const RealDem& known, const io::ReadResult& result) {
     const Raster& raster = result.raster;
     CHECK(raster.grid.rows == known.rows);
@@ -99,5 +111,34 @@ TEST_CASE("every real DEM is read right, and says what is odd about it", "[real]
         const io::ReadResult result = io::read_raster(path);
         UNSCOPED_INFO(Catch::StringMaker<std::vector<std::string>>::convert(result.warnings));
         check(known, result);
+    }
+}
+
+TEST_CASE("outlines of the bands of height of real DEMs cover as much as their cells", "[real]") {
+    const char* folder = std::getenv("THALWEG_DEM_DIR");
+    if (folder == nullptr) {
+        WARN("THALWEG_DEM_DIR is not set: no real DEM is outlined");
+        return;
+    }
+    for (const char* file : {"pozo_gully_lidar_1m.tif", "spearfish_usgs_30m.tif", "big_tujunga_srtm_30m.tif"}) {
+        INFO(file);
+        const Raster raster = io::read_raster(std::filesystem::path(folder) / file, {}).raster;
+        std::vector<Index> labels(raster.values.size(), none);
+        std::vector<double> cells(100, 0);
+        for (std::size_t i = 0; i < labels.size(); ++i) {
+            if (std::isnan(raster.values[i])) continue;
+            labels[i] = static_cast<Index>(raster.values[i] / 25);
+            ++cells.at(labels[i]);
+        }
+        const std::vector<MultiPolygon> bands = io::cell_outlines(raster, labels, 100);
+        for (Index band = 0; band < 100; ++band) {
+            double area = 0;
+            for (const PolygonPart& part : bands[band]) {
+                area += ring_area(part.outer);
+                for (const Polygon& hole : part.holes) area += ring_area(hole);
+            }
+            const double expected = cells[band] * raster.placement.cell_width * raster.placement.cell_height;
+            CHECK(area == Approx(expected).epsilon(1e-9));
+        }
     }
 }

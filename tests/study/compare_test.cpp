@@ -61,7 +61,8 @@ double distance(const Json& comparison, const std::string& name) {
 std::filesystem::path slope_of(const TempFolder& temp, const std::string& name, Index size) {
     const auto t = support::terrain_of(name, size, size, [](Index r, Index c) { return 1000.0 - 3.0 * r + 0.1 * c; });
     io::write_raster(temp / name, plane_grid(size, size, 10, 10),
-                     {.west = 5e5, .north = 4e6, .cell_width = 10, .cell_height = 10, .crs_wkt = ""}, t.elevation_m, {});
+                     {.west = 5e5, .north = 4e6, .cell_width = 10, .cell_height = 10, .crs_wkt = ""}, t.elevation_m,
+                     {});
     return temp / name;
 }
 
@@ -70,7 +71,8 @@ std::filesystem::path slope_of(const TempFolder& temp, const std::string& name, 
 TEST_CASE("The slope-area distance is the root mean square over the areas both curves have, in dex") {
     const TempFolder temp;
     Json other = drawn_summary();
-    // At 10^5 m² the first curve lies at -1.5, this one at -1.1; at 10^6 m² at -2 and -1.9. Elsewhere only one has values.
+    // At 10^5 m² the first curve lies at -1.5, this one at -1.1; at 10^6 m² at -2 and -1.9. Elsewhere only one has
+    // values.
     other["slope_area"] = {{"theta", 0.8}, {"bins", {bin(5, -1.1), bin(7, -2.7)}}};
     const auto a = folder_of(temp, "a", drawn_summary()), b = folder_of(temp, "b", other);
     const Json ab = compared(temp, a, b);

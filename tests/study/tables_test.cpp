@@ -37,8 +37,8 @@ Statistics drawn_statistics() {
     Statistics s{};
     s.strahler_of = channel::strahler_orders(graph, channel);
     s.shreve_of = channel::shreve_magnitudes(graph, channel);
-    s.network = channel::stream_network(graph, channel, support::upstream_counts(graph),
-                                        Doubles{0, 10, 15, 30, 70, 33, 36});
+    s.network =
+        channel::stream_network(graph, channel, support::upstream_counts(graph), Doubles{0, 10, 15, 30, 70, 33, 36});
     return s;
 }
 
@@ -101,7 +101,7 @@ TEST_CASE("The table of basins holds every basin with its outline and its own nu
                  .hypsometric_integral = 0.75,
                  .max_strahler = 2}};
     const Polygon first{{0, 0}, {1, 0}, {1, 1}}, second{{5, 5}, {6, 5}, {6, 6}, {5, 6}};
-    const Table basins = basins_table(s, drawn_position, {first, second});
+    const Table basins = basins_table(s, drawn_position, {MultiPolygon{{first, {}}}, MultiPolygon{{second, {}}}});
     CHECK(basins.kind == GeometryKind::polygon);
     CHECK(column<Wholes>(basins, "id") == Wholes{0, 1});
     CHECK(column<Doubles>(basins, "outlet_x") == Doubles{103, 108});
@@ -111,7 +111,7 @@ TEST_CASE("The table of basins holds every basin with its outline and its own nu
     CHECK(column<Doubles>(basins, "relief_m") == Doubles{40, 70});
     CHECK(column<Doubles>(basins, "hypsometric_integral") == Doubles{0.25, 0.75});
     CHECK(column<Wholes>(basins, "max_strahler") == Wholes{4, 2});
-    CHECK(basins.geometry[1].size() == 4);
+    CHECK(basins.polygons.at(1).at(0).outer.size() == 4);
 }
 
 TEST_CASE("The curves are written with every number in its own column") {
@@ -133,7 +133,12 @@ TEST_CASE("The curves are written with every number in its own column") {
 }
 
 TEST_CASE("Cells of a raster lie at their centres, counted from the north-west") {
-    const Raster raster{plane_grid(3, 4, 10, 20), {.west = 1000, .north = 5000, .cell_width = 10, .cell_height = 20}, {}};
+    Raster raster;
+    raster.grid = plane_grid(3, 4, 10, 20);
+    raster.placement.west = 1000;
+    raster.placement.north = 5000;
+    raster.placement.cell_width = 10;
+    raster.placement.cell_height = 20;
     const Point p = positions(raster)(2 * 4 + 1);
     CHECK(p.x == 1015);
     CHECK(p.y == 4950);

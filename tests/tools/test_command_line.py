@@ -166,5 +166,177 @@ class CommandLine(unittest.TestCase):
         self.assertTrue(any("uplift" in note for note in fit["notes"]), fit["notes"])
 
 
+class EveryOption(unittest.TestCase):
+    """Each option has its own effect and no other."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.here = Path(cls.folder.name)
+        cls.runs = 0
+        (cls.here / "land.toml").write_text(EXPERIMENT)
+        cls.result("simulate", cls.here / "land.toml", "--set", "domain.mesh=raster", "--set", "domain.nodes=5000",
+                   "--set", "time.solver=steady")
+        cls.dem = cls.here / "land.tif"
+        cls.dem.write_bytes((cls.last / "elevation.tif").read_bytes())
+        cls.bins = cls.here / "bins"
+        cls.bins.mkdir()
+        (cls.bins / "summary.json").write_text("{}")
+        rows = [f"{area:g},{slope:g},{0.02 * slope:g},20\n" for area, slope in cls.broken_line()]
+        (cls.bins / "slope_area.csv").write_text("area_m2,slope,slope_se,count\n" + "".join(rows))
+
+    @staticmethod
+    def broken_line():
+        """Slopes that fall with A^-0.2 below 1e5 m2, with A^-0.4 up to 1e7 m2, and with A^-0.8 beyond."""
+        for tenth in range(40, 81):
+            area, exponent = 10 ** (tenth / 10 + 0.01), tenth / 10 + 0.01
+            fall = 0.2 * min(exponent - 4, 1) + 0.4 * max(0, min(exponent, 7) - 5) + 0.8 * max(0, exponent - 7)
+            yield area, 0.5 * 10 ** -fall
+
+    @classmethod
+    def result(cls, command, *arguments):
+        """What the command prints as JSON; its folder is `cls.last`."""
+        cls.runs += 1
+        cls.last = cls.here / f"run{cls.runs}"
+        done = thalweg(command, *arguments, "--out", cls.last, "--json", "--quiet", "--no-figures")
+        if done.returncode != 0:
+            raise AssertionError(done.stderr)
+        return json.loads(done.stdout)
+
+    def alike(self, a, b, *keys):
+        for key in keys:
+            self.assertEqual(a[key], b[key], key)
+
+    def same_files(self, a, b, *names):
+        for name in names:
+            self.assertEqual((a / name).read_bytes(), (b / name).read_bytes(), name)
+
+    def fitted(self, *arguments):
+        return self.result("fit", self.bins, "--uplift-m-per-yr", "1e-3", *arguments)
+
+    def test_n_multiplies_m_and_leaves_theta(self):
+        plain, squared = self.fitted(), self.fitted("--n", "2")
+        self.alike(plain, squared, "area_range_m2", "uplift_m_per_yr")
+        for key in ("theta", "theta_se", "ks", "reduced_chi2"):
+            self.assertAlmostEqual(plain[key], squared[key], places=9)
+        self.assertAlmostEqual(squared["m"], 2 * plain["theta"], places=12)
+        self.assertAlmostEqual(plain["m"], plain["theta"], places=12)
+        self.assertAlmostEqual(squared["k"] * squared["ks"] ** 2 / 1e-3, 1, places=9)
+
+    def test_uplift_scales_k_alone(self):
+        plain, doubled = self.fitted(), self.result("fit", self.bins, "--uplift-m-per-yr", "2e-3")
+        self.alike(plain, doubled, "theta", "ks", "m", "m_se", "k_over_uplift", "area_range_m2")
+        self.assertAlmostEqual(doubled["k"] / plain["k"], 2, places=12)
+
+    def test_uplift_sd_widens_k_alone(self):
+        plain, unsure = self.fitted(), self.fitted("--uplift-sd", "3e-4")
+        self.alike(plain, unsure, "k", "theta", "theta_se", "ks", "ks_se", "m", "m_se", "k_over_uplift",
+                   "k_over_uplift_se", "k_at_reference_area")
+        self.assertEqual(unsure["uplift_sd_m_per_yr"], 3e-4)
+        relative = [fit["k_at_reference_area_se"] / fit["k_at_reference_area"] for fit in (plain, unsure)]
+        self.assertAlmostEqual(relative[1] ** 2 - relative[0] ** 2, 0.3 ** 2, places=9)
+
+    def test_theta_fixed_holds_theta_alone(self):
+        plain, held = self.fitted(), self.fitted("--theta-fixed", "0.45")
+        self.alike(plain, held, "area_range_m2", "uplift_m_per_yr", "n")
+        self.assertEqual(held["theta"], 0.45)
+        self.assertEqual(held["m"], 0.45)
+        self.assertNotAlmostEqual(plain["theta"], 0.45, places=2)
+        self.assertEqual(self.fitted("--theta-fixed", "0.45", "--n", "2")["m"], 0.9)
+
+    def test_area_min_and_area_max_cut_one_end_each(self):
+        plain, low, high = self.fitted(), self.fitted("--area-min-m2", "1e5"), self.fitted("--area-max-m2", "1e7")
+        both = self.fitted("--area-min-m2", "1e5", "--area-max-m2", "1e7")
+        self.assertLess(plain["area_range_m2"][0], 1.1e4)
+        self.assertGreater(plain["area_range_m2"][1], 9e7)
+        for fit in (low, both):
+            self.assertTrue(1e5 <= fit["area_range_m2"][0] < 1.3e5, fit["area_range_m2"])
+        for fit in (high, both):
+            self.assertTrue(0.79e7 < fit["area_range_m2"][1] <= 1e7, fit["area_range_m2"])
+        self.assertEqual(low["area_range_m2"][1], plain["area_range_m2"][1])
+        self.assertEqual(high["area_range_m2"][0], plain["area_range_m2"][0])
+        self.assertAlmostEqual(both["theta"], 0.4, places=3)
+        self.assertGreater(low["theta"], 0.42)
+        self.assertLess(high["theta"], 0.39)
+
+    def analyzed(self, *arguments, dem=None):
+        return self.result("analyze", dem or self.dem, *arguments), self.last
+
+    def test_channel_area_moves_the_sources_alone(self):
+        (plain, at), (asked, there) = self.analyzed(), self.analyzed("--channel-area-m2", "300000")
+        self.alike(plain, asked, "input", "conditioning", "hypsometry")
+        self.same_files(at, there, "filled.tif", "flow_direction.tif", "drainage_area.tif", "hypsometry.csv")
+        self.assertEqual(plain["channels"]["threshold_area_m2"], 1e5)
+        self.assertEqual(asked["channels"]["threshold_area_m2"], 3e5)
+        self.assertLess(asked["channels"]["sources"], plain["channels"]["sources"])
+
+    def test_keep_edge_basins_counts_what_is_cut_alone(self):
+        (plain, at), (kept, there) = self.analyzed(dem=DEM), self.analyzed("--keep-edge-basins", dem=DEM)
+        self.alike(plain, kept, "input", "conditioning", "hypsometry")
+        self.same_files(at, there, "filled.tif", "flow_direction.tif", "drainage_area.tif")
+        self.assertEqual(kept["channels"]["threshold_area_m2"], plain["channels"]["threshold_area_m2"])
+        self.assertLess(plain["channels"]["share_used"], 1)
+        self.assertEqual(kept["channels"]["share_used"], 1)
+        self.assertTrue(all(basin["complete"] for basin in plain["basins"]))
+        self.assertFalse(all(basin["complete"] for basin in kept["basins"]))
+
+    def test_nodata_takes_that_height_away_alone(self):
+        plain, _ = self.analyzed()
+        rim, _ = self.analyzed("--nodata", "0")  # the base level of the simulation
+        cells = 2 * (plain["input"]["rows"] + plain["input"]["cols"]) - 4
+        self.assertEqual(plain["input"]["nodata_cells"], 0)
+        self.assertEqual(rim["input"]["nodata_cells"], cells)
+        self.alike(plain["input"], rim["input"], "rows", "cols", "dx_m", "crs", "elevation_max_m", "sha256")
+        self.assertGreater(rim["input"]["elevation_min_m"], 0)
+        self.assertEqual(self.analyzed("--nodata", "-1")[0]["input"], plain["input"])
+
+    def test_crs_gives_the_map_its_unit_alone(self):
+        (plain, _), (metric, _) = self.analyzed(), self.analyzed("--crs", "EPSG:32611")
+        self.assertEqual(metric["input"]["crs"], "EPSG:32611")
+        self.alike(plain["input"], metric["input"], "dx_m", "dy_m", "area_m2", "valid_cells", "elevation_max_m")
+        self.alike(plain, metric, "hypsometry", "channels", "slope_area")
+        feet, _ = self.analyzed("--crs", "EPSG:2264")
+        self.assertAlmostEqual(feet["input"]["dx_m"] / plain["input"]["dx_m"], 1200 / 3937, places=9)
+        self.alike(plain["input"], feet["input"], "valid_cells", "rows")
+
+    def test_condition_changes_what_is_done_to_pits_alone(self):
+        pit = self.here / "pit.asc"
+        pit.write_text("ncols 5\nnrows 5\nxllcorner 5000\nyllcorner 7000\ncellsize 10\n"
+                       "10 10 10 10 10\n10 9 9 9 10\n10 9 7 9 10\n10 9 9 9 10\n10 10 10 10 8.5\n")
+        expected = {"fill": (1, 200), "carve": (2, 350), "none": (0, 0)}
+        results = {}
+        for method, (cells, volume) in expected.items():
+            summary = results[method] = self.result("analyze", pit, "--condition", method, "--channel-area-m2", "200")
+            self.assertEqual(summary["conditioning"]["method"], method)
+            self.assertEqual(summary["conditioning"]["cells_changed"], cells)
+            self.assertAlmostEqual(summary["conditioning"]["volume_m3"], volume)
+            self.assertEqual(summary["conditioning"]["pits"], 1)
+            self.alike(summary, results["fill"], "input", "hypsometry")
+        self.assertEqual(self.result("analyze", pit, "--channel-area-m2", "200")["conditioning"],
+                         results["fill"]["conditioning"])
+
+    def test_fit_and_compare_heed_the_options_of_a_dem_as_analyze_does(self):
+        for options in ([], ["--channel-area-m2", "300000"], ["--keep-edge-basins"], ["--nodata", "0"],
+                        ["--crs", "EPSG:2264"]):
+            with self.subTest(options=options):
+                dem = DEM if "--keep-edge-basins" in options else self.dem  # where edges cut something
+                summary = self.result("analyze", dem, *options)
+                measured = self.last
+                self.alike(self.result("fit", dem, *options), self.result("fit", measured), "theta", "ks",
+                           "theta_se", "area_range_m2")
+                comparison = self.result("compare", dem, dem, *options)
+                for side in ("a", "b"):
+                    self.assertEqual(comparison[side]["channels"], summary["channels"])
+                    self.assertEqual(comparison[side]["slope_area"]["theta"], summary["slope_area"]["theta"])
+
+    def test_what_was_measured_before_is_not_measured_anew(self):
+        for options in (["--channel-area-m2", "300000"], ["--keep-edge-basins"], ["--nodata", "0"],
+                        ["--crs", "EPSG:2264"]):
+            refusal = thalweg("fit", self.bins, *options, "--out", self.here / "refused")
+            self.assertEqual(refusal.returncode, 2, refusal.stderr)
+            self.assertIn("measured before", refusal.stderr)
+
+
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -174,8 +174,8 @@ def read_lines(path, layer_name, where=None, limit=4000):
         return []
     layer.SetAttributeFilter(where)
     found = []
-    for feature in layer:
-        if len(found) >= limit:
+    for count, feature in enumerate(layer):
+        if count >= limit:
             break
         fields = feature.items()
         for part in _parts(feature.GetGeometryRef()):
