@@ -75,8 +75,11 @@ def extent(record):
 
 
 def _share(record, box):
-    """Square degrees of the box under a tile."""
-    west, south, east, north = bounds_in(extent(record), reader.system_of(record), wgs84())
+    """Square degrees of the box under a tile and the cell around it: lattices may begin half a cell beside a degree."""
+    west, south, east, north = extent(record)
+    dx, dy = record["transform"][1], -record["transform"][5]
+    around = (west - dx, south - dy, east + dx, north + dy)
+    west, south, east, north = bounds_in(around, reader.system_of(record), wgs84())
     return max(0, min(east, box.east) - max(west, box.west)) * max(0, min(north, box.north) - max(south, box.south))
 
 
