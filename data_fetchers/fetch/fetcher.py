@@ -103,10 +103,11 @@ class Fetcher:
             raise UserError(f"--crs with {self.source.key} needs --cell-m, the size of the new cells")
         return mosaic.projected_grid(box, self.options.crs, size)
 
-    @staticmethod
-    def _place(jobs, reach):
+    def _place(self, jobs, reach):
         """The grid of the source's own cells, every job placed under it."""
         native = mosaic.native_grid(reach, [job.record for job in jobs])
+        if native is None:
+            raise UserError(self._nowhere(reach))
         bounds = bounds_in(native.bounds(), native.system(), wgs84())
         for job in jobs:
             job.place(mosaic.window_of(job.record, bounds))

@@ -54,12 +54,16 @@ def cells_inside(bounds, transform, wkt):
 
 
 def native_grid(box, records):
-    """The grid of the finest of those tiles whose coordinate system has the most of the box."""
+    """The grid of the finest of those tiles whose coordinate system has the most of the box; None where no tile has any."""
+    parts = [(record, _share(record, box)) for record in records]
+    there = [(record, share) for record, share in parts if share > 0]
+    if not there:
+        return None
     shares = {}
-    for record in records:
-        shares[record["wkt"]] = shares.get(record["wkt"], 0) + _share(record, box)
+    for record, share in there:
+        shares[record["wkt"]] = shares.get(record["wkt"], 0) + share
     wkt = max(sorted(shares), key=shares.get)
-    finest = min((r for r in records if r["wkt"] == wkt),
+    finest = min((record for record, _ in there if record["wkt"] == wkt),
                  key=lambda r: (-r["transform"][1] * r["transform"][5], r["name"]))
     return cells_inside(bounds_in((box.west, box.south, box.east, box.north), wgs84(), reader.system_of(finest)),
                         finest["transform"], wkt)
@@ -71,8 +75,11 @@ def extent(record):
 
 
 def _share(record, box):
-    """Square degrees of the box under a tile."""
-    west, south, east, north = bounds_in(extent(record), reader.system_of(record), wgs84())
+    """Square degrees of the box under a tile and the cell around it: lattices may begin half a cell beside a degree."""
+    west, south, east, north = extent(record)
+    dx, dy = record["transform"][1], -record["transform"][5]
+    around = (west - dx, south - dy, east + dx, north + dy)
+    west, south, east, north = bounds_in(around, reader.system_of(record), wgs84())
     return max(0, min(east, box.east) - max(west, box.west)) * max(0, min(north, box.north) - max(south, box.south))
 
 

@@ -309,6 +309,9 @@ class Sources(Fetching):
         sums.add(self.fetched("copernicus-glo90", "--force")["sha256"])
         self.assertEqual(len(sums), 1)
 
+    def test_an_index_without_a_tile_there_is_refused(self):
+        self.refused(2, "nothing there", f"index:{HERE / 'glo90'}", box=(20, 20, 20.5, 20.5))
+
     def test_an_index_from_a_server_cannot_name_files_of_this_machine(self):
         for href in ("file:///etc/hostname", "/vsizip//etc/x.zip"):
             (HERE / "stac.json").write_text(json.dumps([{"assets": {"dem": {"href": href}}}]))
