@@ -162,7 +162,7 @@ ROWS = (
     ("Flint’s exponent <i>q</i>", 1, "", 3, "flint.q"),
     ("Exterior over interior link length", 1, "", 3, "links.exterior_interior_ratio"),
     ("Mean junction angle", 1, "°", 3, "junctions.mean_angle_deg"),
-    ("Steepness <i>k</i><sub>sn</sub> (median)", 1, "", 3, "chi.ksn_median"),
+    ("Steepness <i>k</i><sub>sn</sub> (median)", 1, "m<sup>2θ</sup>", 3, "chi.ksn_median"),
 )
 OPTIONAL = ("More of the network",)  # shown only where measured
 
