@@ -598,7 +598,10 @@ class Cache(Fetching):
             self.assertEqual([p.name for p in self.here.iterdir() if p.name != "cache"], [])
 
     def test_on_a_terminal_the_size_is_told_first_and_a_bar_follows(self):
-        master, slave = pty.openpty()
+        try:
+            master, slave = pty.openpty()
+        except OSError:
+            self.skipTest("no terminals here (a chroot without /dev/pts)")
         process = subprocess.Popen([THALWEG, *map(str, self.command("copernicus-glo90"))], env=surroundings(), stderr=slave)
         os.close(slave)
         said = b""
