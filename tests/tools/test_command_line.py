@@ -149,9 +149,21 @@ class CommandLine(unittest.TestCase):
             self.assertEqual(len(said.splitlines()), 1, said)
             self.assertEqual(sorted(self.here.rglob("*")), before)
 
-    def wait_for_a_partial_folder(self):
+    def test_a_drawing_that_is_interrupted_leaves_neither_debris_nor_python(self):
+        before = sorted(self.here.rglob("*"))
+        process = subprocess.Popen([THALWEG, "analyze", DEM, "--out", self.here / "out"], stderr=subprocess.PIPE, text=True)
+        self.wait_for_a_partial_folder("summary.json")
+        time.sleep(0.3)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=60)  # returns only when Python has let go of the pipe, too
+        self.assertEqual(process.returncode, 128 + signal.SIGINT, said)
+        self.assertEqual(len(said.splitlines()), 1, said)
+        time.sleep(2)
+        self.assertEqual(sorted(self.here.rglob("*")), before)
+
+    def wait_for_a_partial_folder(self, holding=""):
         for _ in range(600):
-            if list(self.here.glob(".out*")):
+            if list(self.here.glob(".out*/" + holding if holding else ".out*")):
                 return
             time.sleep(0.05)
         self.fail("the command did not start")
