@@ -168,6 +168,34 @@ class CommandLine(unittest.TestCase):
             time.sleep(0.05)
         self.fail("the command did not start")
 
+    def test_results_that_were_edited_are_refused_where_they_make_no_sense(self):
+        measured, out = self.here / "measured", ["--no-figures", "--out", self.here / "out"]
+        self.assertEqual(thalweg("analyze", DEM, "--out", measured, "--no-figures").returncode, 0)
+        bins = measured / "slope_area.csv"
+        lines = bins.read_text().splitlines()
+        area, slope, error, _ = lines[1].split(",")
+        for edited in (f"{area},{slope},,100", f"{area},{slope},{error},0", f"{area},{slope},{error},-3",
+                       f"{area},{slope},{error},2.5"):
+            bins.write_text("\n".join([lines[0], edited, *lines[2:]]) + "\n")
+            self.refused("fit", measured, *out, saying="line 2")
+        summary = json.loads((measured / "summary.json").read_text())
+        summary["hypsometry"]["relative_area"] = []
+        (measured / "summary.json").write_text(json.dumps(summary))
+        self.refused("compare", measured, measured, *out, saying="summary.json")
+
+    def test_exponents_beyond_reason_are_refused(self):
+        out = ["--no-figures", "--out", self.here / "out"]
+        for value in ("1e-300", "0.29", "1e300"):
+            self.refused("fit", DEM, "--n", value, *out, saying="--n")
+        self.refused("fit", DEM, "--theta-fixed", "1e300", *out, saying="--theta-fixed")
+
+    def test_the_user_is_warned_where_most_rivers_are_left_out_or_a_run_is_not_steady(self):
+        none = thalweg("analyze", DEM, "--channel-area-m2", "1e10", "--out", self.here / "a", "--no-figures", "--quiet")
+        self.assertEqual(none.returncode, 0)
+        self.assertIn("thalweg: warning: channels:", none.stderr)
+        unsteady = thalweg("simulate", self.experiment, "--out", self.here / "s", "--no-figures", "--quiet")
+        self.assertIn("not steady after 10 steps", unsteady.stderr)
+
     def test_a_fit_without_uplift_tells_what_slopes_alone_can_tell(self):
         result = thalweg("fit", DEM, "--out", self.here / "fit", "--json", "--no-figures")
         self.assertEqual(result.returncode, 0, result.stderr)
