@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/simulation_outputs.hpp"
+
+#include <cmath>
+
+#include "thalweg/core/error.hpp"
+#include "thalweg/io/polygonize.hpp"
+#include "thalweg/io/raster_file.hpp"
+#include "thalweg/io/table_file.hpp"
+#include "thalweg/surface/heightfield.hpp"
+
+namespace thalweg::study {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Table node_table(const Finished& f) {
+    std::vector<double> area, slope;
+    std::vector<std::int64_t> limited;
+    for (Index node = 0; node < f.terrain.graph.size(); ++node) {
+        const Index receiver = f.terrain.graph.receiver[node];
+        if (receiver == none) continue;
+        const double drop = f.terrain.elevation_m[node] - f.terrain.elevation_m[receiver];
+        if (!(drop > 0)) continue;
+        area.push_back(f.terrain.drainage_area_m2[node]);
+        slope.push_back(drop / f.terrain.graph.length[node]);
+        limited.push_back(f.talus_limited[node]);
+    }
+    return {.name = "slope_area_nodes",
+            .columns = {{"area_m2", area}, {"slope", slope}, {"talus_limited", limited}},
+            .kind = GeometryKind::no_geometry,
+            .geometry = {}};
+}
+
+Table history_table(const std::vector<evolve::StepRecord>& history) {
+    std::vector<std::int64_t> step, lakes;
+    std::vector<double> time, highest, mean, max_rate, mean_rate, seconds;
+    for (const auto& r : history) {
+        step.push_back(r.step);
+        time.push_back(r.time_yr);
+        lakes.push_back(r.lakes);
+        highest.push_back(r.elevation_max_m);
+        mean.push_back(r.elevation_mean_m);
+        max_rate.push_back(r.max_rate_m_per_yr);
+        mean_rate.push_back(r.mean_rate_m_per_yr);
+        seconds.push_back(r.seconds);
+    }
+    return {.name = "history",
+            .columns = {{"step", step},
+                        {"time_yr", time},
+                        {"lakes", lakes},
+                        {"elevation_max_m", highest},
+                        {"elevation_mean_m", mean},
+                        {"max_rate_m_per_yr", max_rate},
+                        {"mean_rate_m_per_yr", mean_rate},
+                        {"seconds", seconds}},
+            .kind = GeometryKind::no_geometry,
+            .geometry = {}};
+}
+
+template <class T>
+std::vector<T> pick(const std::vector<T>& values, const std::vector<Index>& node, T outside) {
+    std::vector<T> picked(node.size(), outside);
+    for (std::size_t i = 0; i < node.size(); ++i) {
+        if (node[i] != none) picked[i] = values[node[i]];
+    }
+    return picked;
+}
+
+}  // namespace
+
+Heightfield heightfield(const Grid& grid, const Domain& domain, const Finished& f, const Experiment& e) {
+    if (e.output.resolution) {
+        throw Error("output.resolution does not apply to a raster mesh: it is written at its own cells");
+    }
+    Heightfield h{{grid, domain.placement, f.terrain.elevation_m}, f.terrain.drainage_area_m2, f.statistics.basin_of};
+    for (Index node = 0; node < grid.size(); ++node) {
+        if (std::isnan(f.terrain.elevation_m[node])) h.drainage_area_m2[node] = nan;
+    }
+    return h;
+}
+
+Heightfield heightfield(const Mesh& mesh, const Domain& domain, const Finished& f, const Experiment& e) {
+    constexpr Index usual_resolution = 512;
+    Heightfield h;
+    h.elevation = surface::covering_raster(mesh, e.output.resolution.value_or(usual_resolution));
+    surface::interpolate_linear(mesh, f.terrain.elevation_m, h.elevation);
+    const std::vector<Index> node = surface::nearest_node(mesh, h.elevation);
+    h.drainage_area_m2 = pick(f.terrain.drainage_area_m2, node, nan);
+    h.basin_of = pick(f.statistics.basin_of, node, none);
+    Placement& place = h.elevation.placement;
+    place.crs_wkt = domain.placement.crs_wkt;
+    place.west /= domain.unit_m;
+    place.north /= domain.unit_m;
+    place.cell_width /= domain.unit_m;
+    place.cell_height /= domain.unit_m;
+    return h;
+}
+
+PositionOf map_positions(const Domain& domain, const Raster& elevation) {
+    if (std::holds_alternative<Grid>(domain.topology)) return positions(elevation);
+    return [&domain](Index node) {
+        return Point{domain.positions_m[node].x / domain.unit_m, domain.positions_m[node].y / domain.unit_m};
+    };
+}
+
+void write_results(const Heightfield& h, const Finished& f, const Outcome& o, const PositionOf& position,
+                   const std::filesystem::path& folder) {
+    const Raster& e = h.elevation;
+    io::write_raster(folder / "elevation.tif", e.grid, e.placement, e.values,
+                     {.nodata = {}, .description = "elevation (m)"});
+    io::write_raster(folder / "drainage_area.tif", e.grid, e.placement, h.drainage_area_m2,
+                     {.nodata = {}, .description = "drainage area of the nearest node (m2)"});
+    const Statistics& s = f.statistics;
+    auto outlines = io::cell_outlines(e, h.basin_of, static_cast<Index>(s.basins.size()));
+    io::write_geopackage(folder / "network.gpkg",
+                         {links_table(s.network, position), junctions_table(s, position),
+                          basins_table(s, position, std::move(outlines))},
+                         e.placement.crs_wkt);
+    io::write_csv(folder / "slope_area_nodes.csv", node_table(f));
+    io::write_csv(folder / "slope_area.csv", slope_area_table(s.slope_area.bins));
+    io::write_csv(folder / "hypsometry.csv", hypsometry_table(s.hypsometry));
+    io::write_csv(folder / "chi.csv", chi_table(s, position));
+    io::write_csv(folder / "links.csv", link_values(s.network));
+    io::write_csv(folder / "history.csv", history_table(o.history));
+}
+
+}  // namespace thalweg::study
