@@ -21,7 +21,7 @@ void run(benchmark::State& state, const Topology& topology, const std::vector<Bo
         for (Index node = 0; node < topology.size(); ++node) {
             if (boundary[node] == Boundary::base_level) landscape.elevation_m[node] = 0;
         }
-        evolve::simulate(topology, river, setting, {.step_yr = 2e4, .max_steps = steps, .convergence = 0}, landscape);
+        evolve::simulate(topology, {river}, setting, {.step_yr = 2e4, .max_steps = steps, .convergence = 0}, landscape);
         benchmark::DoNotOptimize(landscape);
     }
     per_item(state, static_cast<double>(topology.size()) * steps);

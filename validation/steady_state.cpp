@@ -50,7 +50,7 @@ void come_to_rest(const char* name, const Topology& topology, double n, double t
     const evolve::River river{.k = k, .m = m, .n = n, .talus_slope = talus_slope};
     const evolve::Setting setting = support::island(topology, uplift);
     evolve::Landscape landscape = support::rough_start(setting, 1.0, 7);
-    const auto result = evolve::simulate(topology, river, setting,
+    const auto result = evolve::simulate(topology, {river}, setting,
                                          {.step_yr = 5e4, .max_steps = 20000, .convergence = 1e-13}, landscape);
     const Worst worst = worst_slope(topology, river, setting, landscape, result.frozen);
     fmt::print(

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <catch2/catch.hpp>
 
-// Private to the library: real landscapes hardly ever cycle, so the rule is tested on drawn sequences of directions.
-#include "../../libsim/src/evolve/exchange_watch.hpp"
+#include "thalweg/evolve/exchange_watch.hpp"
+
+// Real landscapes hardly ever cycle, so the rule is tested on drawn sequences of directions.
 
 using thalweg::FlowDirections;
 using thalweg::Index;
 using thalweg::no_flow;
-using thalweg::evolve::ExchangeWatch;
+using namespace thalweg::evolve;
 
 namespace {
 
@@ -22,41 +23,41 @@ FlowDirections swinging(int step, int turn) {
 }  // namespace
 
 TEST_CASE("Directions that never change are no exchange") {
-    ExchangeWatch watch(5, patience);
+    ExchangeWatch watch = exchange_watch(5, patience);
     for (int step = 0; step < 30; ++step) {
-        CHECK(watch.observe(swinging(0, 100)) == 0);
-        CHECK_FALSE(watch.only_the_same());
+        CHECK(observe(watch, swinging(0, 100)) == 0);
+        CHECK_FALSE(only_the_same(watch));
     }
-    CHECK(watch.frozen().empty());
-    CHECK(watch.frozen_count() == 0);
+    CHECK(watch.frozen.empty());
+    CHECK(frozen_count(watch) == 0);
 }
 
 TEST_CASE("A node that swings alone is noticed after the given patience and frozen as it stands") {
-    ExchangeWatch watch(5, patience);
+    ExchangeWatch watch = exchange_watch(5, patience);
     int step = 0;
-    CHECK(watch.observe(swinging(step, 100)) == 0);
-    while (!watch.only_the_same() && step < 50) CHECK(watch.observe(swinging(++step, 100)) == 1);
+    CHECK(observe(watch, swinging(step, 100)) == 0);
+    while (!only_the_same(watch) && step < 50) CHECK(observe(watch, swinging(++step, 100)) == 1);
     CHECK(step == 1 + patience);  // the first swing is new, and then for `patience` steps nothing is
-    watch.freeze();
-    CHECK(watch.frozen() == FlowDirections{no_flow, swinging(step, 100)[1], no_flow, no_flow, no_flow});
-    CHECK(watch.frozen_count() == 1);
-    CHECK(watch.frozen_mask() == std::vector<std::uint8_t>{0, 1, 0, 0, 0});
+    freeze(watch);
+    CHECK(watch.frozen == FlowDirections{no_flow, swinging(step, 100)[1], no_flow, no_flow, no_flow});
+    CHECK(frozen_count(watch) == 1);
+    CHECK(frozen_mask(watch) == std::vector<std::uint8_t>{0, 1, 0, 0, 0});
 }
 
 TEST_CASE("As long as other nodes turn too nothing is frozen") {
-    ExchangeWatch watch(5, patience);
-    for (int step = 0; step <= 4; ++step) watch.observe(swinging(step, 4));  // node 3 turns at step 4
+    ExchangeWatch watch = exchange_watch(5, patience);
+    for (int step = 0; step <= 4; ++step) observe(watch, swinging(step, 4));  // node 3 turns at step 4
     int step = 4;
-    while (!watch.only_the_same() && step < 50) watch.observe(swinging(++step, 4));
+    while (!only_the_same(watch) && step < 50) observe(watch, swinging(++step, 4));
     CHECK(step == 4 + static_cast<int>(patience));
-    watch.freeze();
-    CHECK(watch.frozen_mask() == std::vector<std::uint8_t>{0, 1, 0, 0, 0});  // node 3 turned once, before
+    freeze(watch);
+    CHECK(frozen_mask(watch) == std::vector<std::uint8_t>{0, 1, 0, 0, 0});  // node 3 turned once, before
 }
 
 TEST_CASE("A node that has stopped swinging is let go") {
-    ExchangeWatch watch(5, patience);
+    ExchangeWatch watch = exchange_watch(5, patience);
     int step = 0;
-    for (; step < 4; ++step) watch.observe(swinging(step, 100));
-    for (int i = 0; i < 3 * static_cast<int>(patience); ++i) watch.observe(swinging(3, 100));
-    CHECK_FALSE(watch.only_the_same());
+    for (; step < 4; ++step) observe(watch, swinging(step, 100));
+    for (int i = 0; i < 3 * static_cast<int>(patience); ++i) observe(watch, swinging(3, 100));
+    CHECK_FALSE(only_the_same(watch));
 }

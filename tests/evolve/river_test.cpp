@@ -289,7 +289,7 @@ TEST_CASE("Runs give the same bytes for one thread, two threads and a second tim
     const auto run = [&](int threads) {
         const ThreadLimit limit(threads);
         Landscape landscape = support::rough_start(setting, 1, 9);
-        simulate(grid, {.k = 1e-5, .m = 0.45, .n = 1.2}, setting,
+        simulate(grid, {{.k = 1e-5, .m = 0.45, .n = 1.2}}, setting,
                  {.step_yr = 2e4, .max_steps = 15, .convergence = 1e-3}, landscape);
         return landscape.elevation_m;
     };

@@ -19,8 +19,9 @@ TEST_CASE("The observer sees every step, with the landscape of that moment") {
     landscape.time_yr = 500;
     std::vector<StepRecord> records;
     const SimulationResult result =
-        simulate(grid, {.k = 2e-5}, setting, {.step_yr = 1000, .max_steps = 7, .convergence = 0}, landscape,
-                 [&](const StepRecord& record, const Landscape& now) {
+        simulate(grid, {{.k = 2e-5}}, setting, {.step_yr = 1000, .max_steps = 7, .convergence = 0}, landscape,
+                 [&](const StepRecord& record, const SimulationState& state) {
+                     const Landscape& now = state.landscape;
                      CHECK(record.elevation_max_m == *std::ranges::max_element(now.elevation_m));
                      const double sum = std::accumulate(now.elevation_m.begin(), now.elevation_m.end(), 0.0);
                      CHECK(record.elevation_mean_m == Approx(sum / now.elevation_m.size()));
@@ -47,7 +48,7 @@ TEST_CASE("A run is its steps one by one") {
     Landscape run = support::rough_start(setting, 1, 1);
     Landscape by_hand = run;
     const SimulationResult result =
-        simulate(mesh, river, setting, {.step_yr = 1e4, .max_steps = 12, .convergence = 0}, run);
+        simulate(mesh, {river}, setting, {.step_yr = 1e4, .max_steps = 12, .convergence = 0}, run);
     MassBalance mass;
     for (int i = 0; i < 12; ++i) {
         const Drainage drainage = drain(mesh, by_hand, setting, river.receiver);
@@ -69,8 +70,8 @@ TEST_CASE("A run stops when the mean rate falls under its share of the mean upli
     Landscape landscape = support::rough_start(setting, 1, 1);
     std::vector<double> rates;
     const SimulationResult result =
-        simulate(grid, {.k = 2e-5}, setting, {.step_yr = 2e4, .max_steps = 5000, .convergence = 0.01}, landscape,
-                 [&](const StepRecord& record, const Landscape&) { rates.push_back(record.mean_rate_m_per_yr); });
+        simulate(grid, {{.k = 2e-5}}, setting, {.step_yr = 2e4, .max_steps = 5000, .convergence = 0.01}, landscape,
+                 [&](const StepRecord& record, const SimulationState&) { rates.push_back(record.mean_rate_m_per_yr); });
     CHECK(result.stop_reason == StopReason::converged);
     CHECK(to_string(result.stop_reason) == "converged");
     CHECK(result.steps == rates.size());
@@ -83,7 +84,7 @@ TEST_CASE("No step at all leaves the landscape alone") {
     const Setting setting = support::island(grid, 1e-3);
     Landscape landscape = support::rough_start(setting, 1, 1);
     const Landscape before = landscape;
-    const SimulationResult result = simulate(grid, {.k = 2e-5}, setting, {.step_yr = 1, .max_steps = 0}, landscape);
+    const SimulationResult result = simulate(grid, {{.k = 2e-5}}, setting, {.step_yr = 1, .max_steps = 0}, landscape);
     CHECK(landscape.elevation_m == before.elevation_m);
     CHECK(result.steps == 0);
     CHECK(to_string(result.stop_reason) == "max_steps");
@@ -95,7 +96,7 @@ TEST_CASE("Without uplift and rivers nothing moves but by rounding, and the run 
     const Setting setting = support::island(grid, 0);
     Landscape landscape = support::rough_start(setting, 1, 1);
     const Landscape before = landscape;
-    const SimulationResult result = simulate(grid, {.k = 0}, setting, {.step_yr = 1, .max_steps = 10}, landscape);
+    const SimulationResult result = simulate(grid, {{.k = 0}}, setting, {.step_yr = 1, .max_steps = 10}, landscape);
     CHECK(result.steps <= 3);
     CHECK(result.stop_reason == StopReason::converged);
     for (Index node = 0; node < 25; ++node)
@@ -108,7 +109,7 @@ TEST_CASE("Without uplift a mountain is worn away") {
     const Setting setting = support::island(grid, 0);
     Landscape landscape = support::rough_start(setting, 100, 1);
     const SimulationResult result =
-        simulate(grid, {.k = 1e-4}, setting, {.step_yr = 1e5, .max_steps = 100, .convergence = 1e-3}, landscape);
+        simulate(grid, {{.k = 1e-4}}, setting, {.step_yr = 1e5, .max_steps = 100, .convergence = 1e-3}, landscape);
     CHECK(result.stop_reason == StopReason::max_steps);
     CHECK(*std::ranges::max_element(landscape.elevation_m) < 1e-6);
     CHECK(std::isfinite(result.mean_rate_m_per_yr));
@@ -120,7 +121,7 @@ TEST_CASE("With Bell's lowest receiver the run comes to rest as well") {
     Landscape landscape = support::rough_start(setting, 1, 1);
     const River river{.k = 2e-5, .receiver = terrain::Receiver::lowest};
     const SimulationResult result =
-        simulate(mesh, river, setting, {.step_yr = 1e5, .max_steps = 2000, .convergence = 1e-6}, landscape);
+        simulate(mesh, {river}, setting, {.step_yr = 1e5, .max_steps = 2000, .convergence = 1e-6}, landscape);
     CHECK(result.stop_reason == StopReason::converged);
     CHECK(result.lakes_final == 0);
 }
@@ -129,7 +130,7 @@ TEST_CASE("A landscape of the wrong size is refused") {
     const Grid grid = plane_grid(5, 5, 100, 100);
     const Setting setting = support::island(grid, 1e-3);
     Landscape landscape{.elevation_m = std::vector<double>(24, 0.0)};
-    CHECK_THROWS_AS(simulate(grid, {.k = 1}, setting, {.step_yr = 1, .max_steps = 1}, landscape), Error);
+    CHECK_THROWS_AS(simulate(grid, {{.k = 1}}, setting, {.step_yr = 1, .max_steps = 1}, landscape), Error);
     CHECK_THROWS_AS(solve_steady(grid, {.k = 1}, setting, 1, landscape), Error);
     CHECK_THROWS_AS(drain(grid, landscape, setting, terrain::Receiver::steepest), Error);
 }

@@ -62,7 +62,7 @@ void step_to_steady_and_check(const T& topology, double n, double talus) {
     for (const std::uint64_t seed : {1, 2, 3}) {
         Landscape landscape = support::rough_start(setting, 1, seed);
         const SimulationResult result =
-            simulate(topology, river, setting, {.step_yr = 1e5, .max_steps = 4000, .convergence = 1e-13}, landscape);
+            simulate(topology, {river}, setting, {.step_yr = 1e5, .max_steps = 4000, .convergence = 1e-13}, landscape);
         CAPTURE(n, talus, seed, result.steps, result.frozen_receivers, result.mean_rate_m_per_yr);
         CHECK(result.stop_reason == StopReason::converged);
         CHECK(result.mean_rate_m_per_yr < 1e-10);
@@ -106,7 +106,7 @@ TEST_CASE("A receiver that would change right after the last step is not overloo
     const River river{.k = erodibility(0.75, 1.5), .m = 0.75, .n = 1.5};
     Landscape landscape = support::rough_start(setting, 1, 108);
     const SimulationResult result =
-        simulate(grid, river, setting, {.step_yr = 1e5, .max_steps = 4000, .convergence = 1e-11}, landscape);
+        simulate(grid, {river}, setting, {.step_yr = 1e5, .max_steps = 4000, .convergence = 1e-11}, landscape);
     CHECK(result.stop_reason == StopReason::converged);
     CHECK(check_slope_area(grid, river, setting, landscape, result.frozen).worst_relative < 1e-8);
 }
@@ -136,7 +136,7 @@ TEST_CASE("A river with Hack areas comes to rest on the analytic profile") {
             for (Index node = 0; node < cells; ++node) landscape.elevation_m.push_back(0.001 * node);
             const River river{.k = erodibility(m, n), .m = m, .n = n};
             const SimulationResult result =
-                simulate(grid, river, setting, {.step_yr = 1e6, .max_steps = 500, .convergence = 1e-11}, landscape);
+                simulate(grid, {river}, setting, {.step_yr = 1e6, .max_steps = 500, .convergence = 1e-11}, landscape);
             CHECK(result.stop_reason == StopReason::converged);
             const double scale = std::pow(uplift_m_per_yr / river.k, 1 / n);
             double sum = 0;
@@ -203,7 +203,7 @@ TEST_CASE("The steady solver and time stepping raise mountains of like relief") 
     for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
         Landscape a = support::rough_start(setting, 1, seed);
         Landscape b = a;
-        simulate(mesh, river, setting, {.step_yr = 5e4, .max_steps = 2000, .convergence = 1e-4}, a);
+        simulate(mesh, {river}, setting, {.step_yr = 5e4, .max_steps = 2000, .convergence = 1e-4}, a);
         solve_steady(mesh, river, setting, 2000, b);
         stepped += relief(a);
         direct += relief(b);

@@ -1,45 +1,55 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "evolve/exchange_watch.hpp"
+#include "thalweg/evolve/exchange_watch.hpp"
 
 #include <algorithm>
 
 namespace thalweg::evolve {
 
-Index ExchangeWatch::observe(const FlowDirections& directions) {
-    ++step_;
+ExchangeWatch exchange_watch(Index nodes, Index patience) {
+    ExchangeWatch watch;
+    watch.patience = patience;
+    watch.last_change.assign(nodes, 0);
+    return watch;
+}
+
+Index observe(ExchangeWatch& watch, const FlowDirections& directions) {
+    ++watch.step;
     Index changes = 0;
-    for (Index node = 0; node < before_.size(); ++node) {
-        if (directions[node] == before_[node]) continue;
+    for (Index node = 0; node < watch.before.size(); ++node) {
+        if (directions[node] == watch.before[node]) continue;
         ++changes;
-        const bool quiet = last_change_[node] == 0 || step_ - last_change_[node] > patience_;
-        if (quiet) last_new_change_ = step_;
-        last_change_[node] = step_;
+        Index& last = watch.last_change[node];
+        const bool quiet = last == 0 || watch.step - last > watch.patience;
+        if (quiet) watch.last_new_change = watch.step;
+        last = watch.step;
     }
-    if (changes > 0) last_any_change_ = step_;
-    before_.assign(directions.begin(), directions.end());
+    if (changes > 0) watch.last_any_change = watch.step;
+    watch.before.assign(directions.begin(), directions.end());
     return changes;
 }
 
-bool ExchangeWatch::only_the_same() const {
-    return last_any_change_ != 0 && step_ >= last_new_change_ + patience_ && step_ < last_any_change_ + patience_;
+bool only_the_same(const ExchangeWatch& watch) {
+    return watch.last_any_change != 0 && watch.step >= watch.last_new_change + watch.patience &&
+           watch.step < watch.last_any_change + watch.patience;
 }
 
-void ExchangeWatch::freeze() {
-    frozen_.resize(last_change_.size(), no_flow);
-    for (Index node = 0; node < last_change_.size(); ++node) {
-        if (last_change_[node] != 0 && step_ - last_change_[node] < patience_) frozen_[node] = before_[node];
+void freeze(ExchangeWatch& watch) {
+    watch.frozen.resize(watch.last_change.size(), no_flow);
+    for (Index node = 0; node < watch.last_change.size(); ++node) {
+        const Index last = watch.last_change[node];
+        if (last != 0 && watch.step - last < watch.patience) watch.frozen[node] = watch.before[node];
     }
-    last_new_change_ = step_;
+    watch.last_new_change = watch.step;
 }
 
-Index ExchangeWatch::frozen_count() const {
-    const auto free = std::ranges::count(frozen_, no_flow);
-    return static_cast<Index>(static_cast<std::ptrdiff_t>(frozen_.size()) - free);
+Index frozen_count(const ExchangeWatch& watch) {
+    const auto free = std::ranges::count(watch.frozen, no_flow);
+    return static_cast<Index>(static_cast<std::ptrdiff_t>(watch.frozen.size()) - free);
 }
 
-std::vector<std::uint8_t> ExchangeWatch::frozen_mask() const {
-    std::vector<std::uint8_t> mask(last_change_.size(), 0);
-    for (Index node = 0; node < frozen_.size(); ++node) mask[node] = frozen_[node] != no_flow;
+std::vector<std::uint8_t> frozen_mask(const ExchangeWatch& watch) {
+    std::vector<std::uint8_t> mask(watch.last_change.size(), 0);
+    for (Index node = 0; node < watch.frozen.size(); ++node) mask[node] = watch.frozen[node] != no_flow;
     return mask;
 }
 

@@ -8,7 +8,6 @@
 #include "evolve/check_setting.hpp"
 #include "evolve/drainage.hpp"
 #include "evolve/erosion.hpp"
-#include "evolve/exchange_watch.hpp"
 
 namespace thalweg::evolve {
 namespace {
@@ -24,22 +23,12 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
-/// Whether the volume moved per step still falls: under half its lowest value so far at least once in `patience` steps.
-class Slackening {
-  public:
-    void observe(double moved_m3) {
-        ++steps_;
-        if (moved_m3 >= 0.5 * lowest_) return;
-        lowest_ = moved_m3;
-        steps_ = 0;
-    }
-    bool over() const { return steps_ >= patience; }
-    void restart() { steps_ = 0; }
-
-  private:
-    double lowest_ = std::numeric_limits<double>::infinity();
-    Index steps_ = 0;
-};
+void observe(Slackening& slackening, double moved_m3) {
+    ++slackening.steps;
+    if (moved_m3 >= 0.5 * slackening.lowest_m3) return;
+    slackening.lowest_m3 = moved_m3;
+    slackening.steps = 0;
+}
 
 void add(MassBalance& total, const MassBalance& step) {
     total.uplifted_m3 += step.uplifted_m3;
@@ -49,117 +38,129 @@ void add(MassBalance& total, const MassBalance& step) {
     total.stored_m3 += step.stored_m3;
 }
 
+/// What does not change during a run, and buffers that live as long as it. Nothing in it is state.
 template <Topology T>
-class Simulation {
-  public:
-    Simulation(const T& topology, const River& river, const Setting& setting, const TimeOptions& options,
-               Landscape& landscape)
-        : topology_(topology),
-          river_(river),
-          setting_(setting),
-          options_(options),
-          landscape_(landscape),
-          solve_(river.n),
-          exchange_(topology.size(), patience) {}
-
-    SimulationResult run(const Observer& observer) {
-        while (result_.steps < options_.max_steps && result_.stop_reason != StopReason::converged) {
-            const auto start = Clock::now();
-            const StepReport report = step();
-            if (observer) observer(record(report, seconds_since(start)), landscape_);
-        }
-        return finish();
-    }
-
-  private:
-    StepReport step() {
-        drain_into(topology_, landscape_, setting_, river_.receiver, exchange_.frozen(), drainage_);
-        const StepSums sums = with_edges(topology_, [&](const auto& edges) {
-            return erode_along(edges, drainage_, river_, solve_, setting_, options_.step_yr, landscape_);
-        });
-        const StepReport report = sums.report(options_.step_yr);
-        ++result_.steps;
-        result_.max_rate_m_per_yr = report.max_rate_m_per_yr;
-        result_.mean_rate_m_per_yr = report.mean_rate_m_per_yr;
-        result_.largest_newton_iterations =
-            std::max(result_.largest_newton_iterations, report.largest_newton_iterations);
-        add(result_.mass, report.mass);
-        if (options_.convergence > 0) judge(sums.moved, sums.uplifted.value());
-        return report;
-    }
-
-    /// Compares the volume that moved in a step with the volume uplifted in it. A receiver that changes at the very end
-    /// would set the landscape going again: at rest is what drains as it did, or stays calm for one step more.
-    void judge(double moved_m3, double uplifted_m3) {
-        const bool calm_before = calm_;
-        calm_ = moved_m3 <= options_.convergence * uplifted_m3;
-        if (calm_ && (calm_before || drains_as_before())) {
-            result_.stop_reason = StopReason::converged;
-            return;
-        }
-        exchange_.observe(drainage_.directions);
-        slackening_.observe(moved_m3);
-        if (moved_m3 < freezing_share * uplifted_m3 && slackening_.over() && exchange_.only_the_same()) {
-            exchange_.freeze();
-            slackening_.restart();
-        }
-    }
-
-    bool drains_as_before() const {
-        Drainage now;
-        drain_into(topology_, landscape_, setting_, river_.receiver, exchange_.frozen(), now);
-        return now.directions == drainage_.directions;
-    }
-
-    StepRecord record(const StepReport& report, double seconds) const {
-        double highest = -std::numeric_limits<double>::infinity();
-        CompensatedSum volume, area;
-        for (Index node = 0; node < topology_.size(); ++node) {
-            const double height = landscape_.elevation_m[node];
-            if (std::isnan(height)) continue;
-            highest = std::max(highest, height);
-            volume.add(topology_.area(node) * height);
-            area.add(topology_.area(node));
-        }
-        return {.step = result_.steps,
-                .time_yr = landscape_.time_yr,
-                .lakes = drainage_.lakes,
-                .elevation_max_m = highest,
-                .elevation_mean_m = volume.value() / area.value(),
-                .max_rate_m_per_yr = report.max_rate_m_per_yr,
-                .mean_rate_m_per_yr = report.mean_rate_m_per_yr,
-                .seconds = seconds};
-    }
-
-    SimulationResult finish() {
-        FlowDirections directions =
-            terrain::route(topology_, landscape_.elevation_m, setting_.boundary, river_.receiver);
-        result_.lakes_final = terrain::drain_lakes(topology_, landscape_.elevation_m, setting_.boundary, directions);
-        result_.frozen_receivers = exchange_.frozen_count();
-        result_.frozen = exchange_.frozen_mask();
-        return result_;
-    }
-
-    const T& topology_;
-    const River& river_;
-    const Setting& setting_;
-    const TimeOptions& options_;
-    Landscape& landscape_;
-    SlopeSolver solve_;
-    Drainage drainage_;
-    ExchangeWatch exchange_;
-    Slackening slackening_;
-    bool calm_ = false;
-    SimulationResult result_;
+struct Run {
+    const T& topology;
+    const Model& model;
+    const Setting& setting;
+    const TimeOptions& options;
+    SlopeSolver solve;
+    Drainage drainage;
 };
 
 template <Topology T>
-SimulationResult simulated(const T& topology, const River& river, const Setting& setting, const TimeOptions& options,
-                           Landscape& landscape, const Observer& observer) {
+bool drains_as_before(const Run<T>& run, const SimulationState& state) {
+    Drainage now;
+    drain_into(run.topology, state.landscape, run.setting, run.model.river.receiver, state.exchange.frozen, now);
+    return now.directions == run.drainage.directions;
+}
+
+/// Compares the volume that moved in a step with the volume uplifted in it. A receiver that changes at the very end
+/// would set the landscape going again: at rest is what drains as it did, or stays calm for one step more.
+template <Topology T>
+void judge(const Run<T>& run, double moved_m3, double uplifted_m3, SimulationState& state) {
+    const bool calm_before = state.calm;
+    state.calm = moved_m3 <= run.options.convergence * uplifted_m3;
+    if (state.calm && (calm_before || drains_as_before(run, state))) {
+        state.converged = true;
+        return;
+    }
+    observe(state.exchange, run.drainage.directions);
+    observe(state.slackening, moved_m3);
+    const bool nearly_at_rest = moved_m3 < freezing_share * uplifted_m3 && state.slackening.steps >= patience;
+    if (nearly_at_rest && only_the_same(state.exchange)) {
+        freeze(state.exchange);
+        state.slackening.steps = 0;
+    }
+}
+
+/// One step of the model: drain, then each process in turn.
+template <Topology T>
+StepReport step(Run<T>& run, SimulationState& state) {
+    Landscape& landscape = state.landscape;
+    const River& river = run.model.river;
+    drain_into(run.topology, landscape, run.setting, river.receiver, state.exchange.frozen, run.drainage);
+    const StepSums sums = with_edges(run.topology, [&](const auto& edges) {
+        return erode_along(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr, landscape);
+    });
+    const StepReport report = sums.report(run.options.step_yr);
+    ++state.steps;
+    state.max_rate_m_per_yr = report.max_rate_m_per_yr;
+    state.mean_rate_m_per_yr = report.mean_rate_m_per_yr;
+    state.largest_newton_iterations = std::max(state.largest_newton_iterations, report.largest_newton_iterations);
+    add(state.mass, report.mass);
+    if (run.options.convergence > 0) judge(run, sums.moved, sums.uplifted.value(), state);
+    return report;
+}
+
+template <Topology T>
+StepRecord record(const T& topology, const SimulationState& state, Index lakes, double seconds) {
+    double highest = -std::numeric_limits<double>::infinity();
+    CompensatedSum volume, area;
+    for (Index node = 0; node < topology.size(); ++node) {
+        const double height = state.landscape.elevation_m[node];
+        if (std::isnan(height)) continue;
+        highest = std::max(highest, height);
+        volume.add(topology.area(node) * height);
+        area.add(topology.area(node));
+    }
+    return {.step = state.steps,
+            .time_yr = state.landscape.time_yr,
+            .lakes = lakes,
+            .elevation_max_m = highest,
+            .elevation_mean_m = volume.value() / area.value(),
+            .max_rate_m_per_yr = state.max_rate_m_per_yr,
+            .mean_rate_m_per_yr = state.mean_rate_m_per_yr,
+            .seconds = seconds};
+}
+
+template <Topology T>
+SimulationResult result_of(const Run<T>& run, const SimulationState& state) {
+    const auto& elevation_m = state.landscape.elevation_m;
+    const auto& boundary = run.setting.boundary;
+    FlowDirections directions = terrain::route(run.topology, elevation_m, boundary, run.model.river.receiver);
+    SimulationResult result{.steps = state.steps,
+                            .stop_reason = state.converged ? StopReason::converged : StopReason::max_steps,
+                            .max_rate_m_per_yr = state.max_rate_m_per_yr,
+                            .mean_rate_m_per_yr = state.mean_rate_m_per_yr,
+                            .frozen_receivers = frozen_count(state.exchange),
+                            .frozen = frozen_mask(state.exchange),
+                            .mass = state.mass,
+                            .largest_newton_iterations = state.largest_newton_iterations};
+    result.lakes_final = terrain::drain_lakes(run.topology, elevation_m, boundary, directions);
+    return result;
+}
+
+template <Topology T>
+void check(const T& topology, const Model& model, const Setting& setting, const TimeOptions& options,
+           const Landscape& landscape) {
     check_setting(topology.size(), landscape, setting);
-    check_river(river);
+    check_river(model.river);
     check_step(options.step_yr);
-    return Simulation<T>(topology, river, setting, options, landscape).run(observer);
+}
+
+template <Topology T>
+SimulationResult continued(const T& topology, const Model& model, const Setting& setting, const TimeOptions& options,
+                           SimulationState& state, const Observer& observer) {
+    check(topology, model, setting, options, state.landscape);
+    Run<T> run{topology, model, setting, options, SlopeSolver(model.river.n), {}};
+    while (state.steps < options.max_steps && !state.converged) {
+        const auto start = Clock::now();
+        step(run, state);
+        if (observer) observer(record(topology, state, run.drainage.lakes, seconds_since(start)), state);
+    }
+    return result_of(run, state);
+}
+
+template <Topology T>
+SimulationResult simulated(const T& topology, const Model& model, const Setting& setting, const TimeOptions& options,
+                           Landscape& landscape, const Observer& observer) {
+    check(topology, model, setting, options, landscape);
+    SimulationState state = initial_state(std::move(landscape));
+    const SimulationResult result = continued(topology, model, setting, options, state, observer);
+    landscape = std::move(state.landscape);
+    return result;
 }
 
 template <class Edges>
@@ -179,14 +180,31 @@ std::vector<std::uint8_t> talus_mask(const Edges& edges, const Drainage& drainag
 
 std::string to_string(StopReason reason) { return reason == StopReason::converged ? "converged" : "max_steps"; }
 
-SimulationResult simulate(const Grid& grid, const River& river, const Setting& setting, const TimeOptions& options,
-                          Landscape& landscape, const Observer& observer) {
-    return simulated(grid, river, setting, options, landscape, observer);
+SimulationState initial_state(Landscape landscape) {
+    SimulationState state;
+    state.exchange = exchange_watch(static_cast<Index>(landscape.elevation_m.size()), patience);
+    state.landscape = std::move(landscape);
+    return state;
 }
 
-SimulationResult simulate(const Mesh& mesh, const River& river, const Setting& setting, const TimeOptions& options,
+SimulationResult simulate(const Grid& grid, const Model& model, const Setting& setting, const TimeOptions& options,
                           Landscape& landscape, const Observer& observer) {
-    return simulated(mesh, river, setting, options, landscape, observer);
+    return simulated(grid, model, setting, options, landscape, observer);
+}
+
+SimulationResult simulate(const Mesh& mesh, const Model& model, const Setting& setting, const TimeOptions& options,
+                          Landscape& landscape, const Observer& observer) {
+    return simulated(mesh, model, setting, options, landscape, observer);
+}
+
+SimulationResult simulate(const Grid& grid, const Model& model, const Setting& setting, const TimeOptions& options,
+                          SimulationState& state, const Observer& observer) {
+    return continued(grid, model, setting, options, state, observer);
+}
+
+SimulationResult simulate(const Mesh& mesh, const Model& model, const Setting& setting, const TimeOptions& options,
+                          SimulationState& state, const Observer& observer) {
+    return continued(mesh, model, setting, options, state, observer);
 }
 
 std::vector<std::uint8_t> at_talus_limit(const Grid& grid, const Drainage& drainage, const River& river,

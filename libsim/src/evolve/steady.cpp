@@ -7,8 +7,8 @@
 #include "evolve/check_setting.hpp"
 #include "evolve/drainage.hpp"
 #include "evolve/erosion.hpp"
-#include "evolve/exchange_watch.hpp"
 #include "thalweg/core/error.hpp"
+#include "thalweg/evolve/exchange_watch.hpp"
 #include "thalweg/evolve/simulate.hpp"
 
 namespace thalweg::evolve {
@@ -69,20 +69,20 @@ SteadyResult solved(const T& topology, const River& river, const Setting& settin
     check_river(river);
     check_steady(topology, river, setting);
     const SteadySlope slope(river, setting);
-    ExchangeWatch exchange(topology.size(), patience);
+    ExchangeWatch exchange = exchange_watch(topology.size(), patience);
     Drainage drainage;
     SteadyResult result{.sweeps = 0, .converged = false, .frozen_receivers = 0, .frozen = {}};
     while (result.sweeps < max_sweeps) {
-        drain_into(topology, landscape, setting, river.receiver, exchange.frozen(), drainage);
-        const Index changes = exchange.observe(drainage.directions);
+        drain_into(topology, landscape, setting, river.receiver, exchange.frozen, drainage);
+        const Index changes = observe(exchange, drainage.directions);
         result.converged = result.sweeps > 0 && changes == 0;
         if (result.converged) break;
-        if (exchange.only_the_same()) exchange.freeze();
+        if (only_the_same(exchange)) freeze(exchange);
         with_edges(topology, [&](const auto& edges) { integrate(edges, drainage, slope, landscape); });
         ++result.sweeps;
     }
-    result.frozen_receivers = exchange.frozen_count();
-    result.frozen = exchange.frozen_mask();
+    result.frozen_receivers = frozen_count(exchange);
+    result.frozen = frozen_mask(exchange);
     return result;
 }
 

@@ -6,8 +6,8 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "study/model.hpp"
 #include "study/report_json.hpp"
 #include "study/simulation_outputs.hpp"
 #include "thalweg/core/error.hpp"
@@ -28,22 +28,11 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-evolve::River river_of(const Experiment& e) {
-    if (!e.river.k) throw Error("river.k (erodibility) is needed");
-    if (!e.river.m) throw Error("river.m (exponent of the drainage area) is needed");
-    evolve::River river{.k = *e.river.k, .m = *e.river.m, .n = e.river.n, .receiver = e.river.receiver};
-    if (e.hillslope.talus_angle_deg) {
-        const double angle = *e.hillslope.talus_angle_deg;
-        if (angle < 90) river.talus_slope = std::tan(angle * std::numbers::pi / 180);
-    }
-    return river;
-}
-
 template <class Topology>
-Outcome step_through_time(const Topology& topology, const evolve::River& river, const Experiment& e, Domain& domain,
+Outcome step_through_time(const Topology& topology, const evolve::Model& model, const Experiment& e, Domain& domain,
                           const Messages& messages) {
     Outcome o;
-    const auto observe = [&](const evolve::StepRecord& record, const evolve::Landscape&) {
+    const auto observe = [&](const evolve::StepRecord& record, const evolve::SimulationState&) {
         o.history.push_back(record);
         if (record.step % 50 == 0) {
             messages.progress(fmt::format("step {}: highest {:.1f} m, mean rate {:.3g} m/yr, {} lakes", record.step,
@@ -51,7 +40,7 @@ Outcome step_through_time(const Topology& topology, const evolve::River& river, 
         }
     };
     const evolve::TimeOptions time{e.time.step_yr, e.time.max_steps, e.time.convergence};
-    const evolve::SimulationResult r = evolve::simulate(topology, river, domain.setting, time, domain.start, observe);
+    const evolve::SimulationResult r = evolve::simulate(topology, model, domain.setting, time, domain.start, observe);
     o.steps = r.steps;
     o.time_yr = domain.start.time_yr;
     o.converged = r.stop_reason == evolve::StopReason::converged;
@@ -76,8 +65,9 @@ Outcome solve_directly(const Topology& topology, const evolve::River& river, con
 }
 
 template <class Topology>
-Finished finish(const Topology& topology, const evolve::River& river, const Domain& domain, const Experiment& e) {
+Finished finish(const Topology& topology, const evolve::Model& model, const Domain& domain, const Experiment& e) {
     Finished f;
+    const evolve::River& river = model.river;
     const evolve::Drainage drainage = evolve::drain(topology, domain.start, domain.setting, river.receiver);
     f.lakes = drainage.lakes;
     f.talus_limited = evolve::at_talus_limit(topology, drainage, river, domain.start);
@@ -160,16 +150,16 @@ Json summary_json(const Domain& domain, const Outcome& o, const Finished& f, con
 template <class Topology>
 std::string run(const Topology& topology, const Experiment& e, Domain& domain, double mesh_seconds,
                 const std::filesystem::path& folder, const Messages& messages) {
-    const evolve::River river = river_of(e);
+    const evolve::Model model = model_of(e);
     messages.progress(fmt::format("simulating {} nodes", topology.size()));
     const Stopwatch simulating;
-    const Outcome outcome = e.time.solver == Solver::steady ? solve_directly(topology, river, e, domain)
-                                                            : step_through_time(topology, river, e, domain, messages);
+    const Outcome outcome = e.time.solver == Solver::steady ? solve_directly(topology, model.river, e, domain)
+                                                            : step_through_time(topology, model, e, domain, messages);
     const double simulate_seconds = simulating.seconds();
 
     messages.progress("measuring and writing");
     const Stopwatch writing;
-    const Finished finished = finish(topology, river, domain, e);
+    const Finished finished = finish(topology, model, domain, e);
     const Heightfield h = heightfield(topology, domain, finished, e);
     const PositionOf position = map_positions(domain, h.elevation);
     write_results(h, finished, outcome, position, folder);
@@ -194,7 +184,7 @@ std::string run(const Topology& topology, const Experiment& e, Domain& domain, d
 template <class MakeDomain>
 std::string simulate_on(const Experiment& e, const std::filesystem::path& folder, const Messages& messages,
                         MakeDomain make) {
-    river_of(e);
+    model_of(e);
     messages.progress("making the mesh");
     const Stopwatch meshing;
     Domain domain = make();

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <string>
 
-#include "thalweg/evolve/river.hpp"
+#include "thalweg/evolve/exchange_watch.hpp"
+#include "thalweg/evolve/model.hpp"
 
 namespace thalweg::evolve {
 
@@ -13,6 +15,29 @@ struct TimeOptions {
     Index max_steps;
     double convergence = 1e-3;  ///< stop when the mean rate falls below this times the mean uplift; 0: never
 };
+
+/// Whether the volume moved per step still falls: under half its lowest value so far at least once in some steps.
+struct Slackening {
+    double lowest_m3 = std::numeric_limits<double>::infinity();
+    Index steps = 0;  ///< since it fell last
+};
+
+/// All that one step hands to the next: a copy of it, continued later or elsewhere, gives the same bytes. Whatever is
+/// to survive a step stands here and nowhere else; buffers that only save time are no state.
+struct SimulationState {
+    Landscape landscape;
+    Index steps = 0;
+    bool converged = false;
+    double max_rate_m_per_yr = 0, mean_rate_m_per_yr = 0;  ///< of the last step
+    int largest_newton_iterations = 0;
+    MassBalance mass;   ///< of all steps
+    bool calm = false;  ///< the last step moved no more than convergence asks for
+    ExchangeWatch exchange;
+    Slackening slackening;
+};
+
+/// The state before the first step.
+SimulationState initial_state(Landscape);
 
 /// After each step, for the history, progress and snapshots.
 struct StepRecord {
@@ -39,7 +64,7 @@ struct SimulationResult {
     int largest_newton_iterations = 0;
 };
 
-using Observer = std::function<void(const StepRecord&, const Landscape&)>;
+using Observer = std::function<void(const StepRecord&, const SimulationState&)>;
 
 /// Steps until the landscape is steady or the steps are used up.
 ///
@@ -52,9 +77,15 @@ using Observer = std::function<void(const StepRecord&, const Landscape&)>;
 /// If for 50 steps only the same nodes exchanged their receivers, while the mean rate was under a tenth of the mean
 /// uplift and no longer fell to half, those receivers are frozen (as long as they lead down) and counted. With
 /// convergence = 0 nothing is frozen.
-SimulationResult simulate(const Grid&, const River&, const Setting&, const TimeOptions&, Landscape&,
+SimulationResult simulate(const Grid&, const Model&, const Setting&, const TimeOptions&, Landscape&,
                           const Observer& = {});
-SimulationResult simulate(const Mesh&, const River&, const Setting&, const TimeOptions&, Landscape&,
+SimulationResult simulate(const Mesh&, const Model&, const Setting&, const TimeOptions&, Landscape&,
+                          const Observer& = {});
+
+/// The same from any state: what is left until it is steady or has `max_steps` steps, those before counted in.
+SimulationResult simulate(const Grid&, const Model&, const Setting&, const TimeOptions&, SimulationState&,
+                          const Observer& = {});
+SimulationResult simulate(const Mesh&, const Model&, const Setting&, const TimeOptions&, SimulationState&,
                           const Observer& = {});
 
 struct SteadyResult {

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/model.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "thalweg/core/error.hpp"
+
+namespace thalweg::study {
+namespace {
+
+evolve::River river_of(const Experiment& e) {
+    if (!e.river.k) throw Error("river.k (erodibility) is needed");
+    if (!e.river.m) throw Error("river.m (exponent of the drainage area) is needed");
+    evolve::River river{.k = *e.river.k, .m = *e.river.m, .n = e.river.n, .receiver = e.river.receiver};
+    if (e.hillslope.talus_angle_deg) {
+        const double angle = *e.hillslope.talus_angle_deg;
+        if (angle < 90) river.talus_slope = std::tan(angle * std::numbers::pi / 180);
+    }
+    return river;
+}
+
+}  // namespace
+
+evolve::Model model_of(const Experiment& e) { return {.river = river_of(e)}; }
+
+}  // namespace thalweg::study
