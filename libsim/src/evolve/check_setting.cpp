@@ -22,6 +22,9 @@ void check_setting(Index nodes, const Landscape& landscape, const Setting& setti
     check_count("uplift", setting.uplift_m_per_yr.size(), nodes);
     check_count("rainfall", setting.rainfall.size(), nodes);
     check_count("boundary", setting.boundary.size(), nodes);
+    if (!setting.relative_erodibility.empty()) {
+        check_count("relative erodibility", setting.relative_erodibility.size(), nodes);
+    }
 }
 
 void check_river(const River& river) {

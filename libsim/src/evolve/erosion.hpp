@@ -77,6 +77,7 @@ inline void fetch(Index node, const Drainage& drainage, const Setting& setting, 
     __builtin_prefetch(&drainage.directions[node]);
     __builtin_prefetch(&drainage.area_m2[node]);
     __builtin_prefetch(&setting.uplift_m_per_yr[node]);
+    if (!setting.relative_erodibility.empty()) __builtin_prefetch(&setting.relative_erodibility[node]);
     __builtin_prefetch(&elevation_m[node]);
 }
 
@@ -88,6 +89,7 @@ StepSums erode_along(const Edges& edges, const Drainage& drainage, const River& 
     const std::span<double> elevation = landscape.elevation_m;
     const std::span<const Index> order = drainage.order;
     const double dt_k = dt_yr * river.k;
+    const double* const relative_k = setting.relative_erodibility.empty() ? nullptr : &setting.relative_erodibility[0];
     for (std::size_t at = 0; at < order.size(); ++at) {
         if (at + ahead < order.size()) fetch(order[at + ahead], drainage, setting, elevation);
         const Index node = order[at];
@@ -95,9 +97,10 @@ StepSums erode_along(const Edges& edges, const Drainage& drainage, const River& 
         if (slot == no_flow) continue;  // base level, or the outlet of a piece that has none
         const double before = elevation[node];
         const double uplift_m = dt_yr * setting.uplift_m_per_yr[node];
+        const double dt_k_here = relative_k == nullptr ? dt_k : dt_k * relative_k[node];
         const NodeStep step =
             step_node(before + uplift_m, elevation[edges.neighbor(node, slot)], edges.length(node, slot),
-                      dt_k * area_power(drainage.area_m2[node], river.m), solve, river.talus_slope);
+                      dt_k_here * area_power(drainage.area_m2[node], river.m), solve, river.talus_slope);
         elevation[node] = step.elevation_m;
         sums.add(edges.area(node), uplift_m, step.elevation_m - before, step);
     }

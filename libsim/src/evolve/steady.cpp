@@ -17,12 +17,19 @@ namespace {
 /// Sweeps for which only the same nodes may exchange receivers before they are kept.
 constexpr Index patience = 20;
 
+double erodibility(const River& river, const Setting& setting, Index node) {
+    return setting.relative_erodibility.empty() ? river.k : river.k * setting.relative_erodibility[node];
+}
+
 /// u/k and the exponents of S = (u/k)^(1/n)·A^(−m/n), made once: the slope costs one root and one power per node.
 class SteadySlope {
   public:
     SteadySlope(const River& river, const Setting& setting)
         : area_exponent_(river.m / river.n), talus_(river.talus_slope), slope_at_unit_area_(setting.uplift_m_per_yr) {
-        for (double& value : slope_at_unit_area_) value = value > 0 ? std::pow(value / river.k, 1 / river.n) : 0;
+        for (Index node = 0; node < slope_at_unit_area_.size(); ++node) {
+            double& value = slope_at_unit_area_[node];
+            value = value > 0 ? std::pow(value / erodibility(river, setting, node), 1 / river.n) : 0;
+        }
     }
 
     /// Infinite where a node rises and no water carries anything away.
@@ -53,7 +60,8 @@ void check_steady(const T& topology, const River& river, const Setting& setting)
     if (std::isfinite(river.talus_slope)) return;
     for (Index node = 0; node < topology.size(); ++node) {
         if (setting.boundary[node] == Boundary::base_level || !(setting.uplift_m_per_yr[node] > 0)) continue;
-        const double erosion = river.k * area_power(topology.area(node) * setting.rainfall[node], river.m);
+        const double erosion =
+            erodibility(river, setting, node) * area_power(topology.area(node) * setting.rainfall[node], river.m);
         if (erosion > 0) continue;
         throw Error(
             fmt::format("node {} rises but nothing wears it down (k·A^m is 0), so it has no steady height: give it "

@@ -15,9 +15,10 @@ struct Landscape {
 
 /// What surrounds the landscape and drives it: one value per node.
 struct Setting {
-    std::vector<double> uplift_m_per_yr;   ///< ≥ 0; base-level nodes are not uplifted
-    std::vector<double> rainfall;          ///< relative to the mean, ≥ 0; multiplies the cell area in the drainage area
-    std::vector<Boundary> boundary;        ///< `base_level` at the outlets, `interior` elsewhere
+    std::vector<double> uplift_m_per_yr;            ///< ≥ 0; base-level nodes are not uplifted
+    std::vector<double> rainfall;                   ///< relative, ≥ 0; multiplies the cell area in the drainage area
+    std::vector<Boundary> boundary;                 ///< `base_level` at the outlets, `interior` elsewhere
+    std::vector<double> relative_erodibility = {};  ///< ≥ 0; multiplies the river's k; empty: 1 everywhere
 };
 
 }  // namespace thalweg::evolve
