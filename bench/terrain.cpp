@@ -2,8 +2,10 @@
 // The chain from a DEM to drainage areas, per cell, on one thread and on two.
 #include "cases.hpp"
 #include "thalweg/terrain/accumulate.hpp"
+#include "thalweg/terrain/d_infinity.hpp"
 #include "thalweg/terrain/flats.hpp"
 #include "thalweg/terrain/lakes.hpp"
+#include "thalweg/terrain/multiple_flow.hpp"
 #include "thalweg/terrain/route.hpp"
 
 namespace thalweg::bench {
@@ -51,10 +53,46 @@ void fill_flats_route_area(benchmark::State& state) {
     per_item(state, dem.grid.size());
 }
 
+/// Filled, with flats resolved: what flow divides on.
+struct RoutedDem {
+    Dem dem;
+    FlowDirections single;
+};
+
+RoutedDem routed_dem(const benchmark::State& state) {
+    Dem dem = rough_dem(state);
+    dem.z = terrain::fill(dem.grid, dem.z, dem.boundary);
+    FlowDirections single = terrain::route(dem.grid, dem.z, dem.boundary);
+    terrain::resolve_flats(dem.grid, dem.z, dem.boundary, single);
+    return {std::move(dem), std::move(single)};
+}
+
+void multiple_flow_area(benchmark::State& state) {
+    const auto [dem, single] = routed_dem(state);
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    const std::vector<double> cells = terrain::cell_areas(dem.grid);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(terrain::accumulate(terrain::multiple_flow(dem.grid, dem.z, single), cells));
+    }
+    per_item(state, dem.grid.size());
+}
+
+void d_infinity_area(benchmark::State& state) {
+    const auto [dem, single] = routed_dem(state);
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    const std::vector<double> cells = terrain::cell_areas(dem.grid);
+    for (auto _ : state) {
+        benchmark::DoNotOptimize(terrain::accumulate(terrain::d_infinity(dem.grid, dem.z, single), cells));
+    }
+    per_item(state, dem.grid.size());
+}
+
 #define SIZES Args({1000, 1})->Args({1000, 2})->Args({4000, 1})->Args({4000, 2})->Unit(benchmark::kMillisecond)
 BENCHMARK(fill)->SIZES;
 BENCHMARK(route)->SIZES;
 BENCHMARK(fill_flats_route_area)->SIZES;
+BENCHMARK(multiple_flow_area)->SIZES;
+BENCHMARK(d_infinity_area)->SIZES;
 
 }  // namespace
 }  // namespace thalweg::bench

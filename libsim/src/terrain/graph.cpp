@@ -7,6 +7,7 @@
 
 #include "terrain/check_sizes.hpp"
 #include "terrain/downhill.hpp"
+#include "terrain/row_lengths.hpp"
 #include "thalweg/core/parallel.hpp"
 
 namespace thalweg::terrain {
@@ -62,11 +63,7 @@ void write_lengths(const Grid& grid, const FlowDirections& directions, std::vect
     const auto rows = [&](Index first_row, Index last_row) {
         for (Index row = first_row; row < last_row; ++row) {
             const std::size_t first = std::size_t{row} * grid.cols;
-            std::array<double, 8> of_slot{};
-            for (Slot slot = 0; slot < 8; ++slot) {
-                const bool inside = row + Grid::row_step[slot] < grid.rows;  // row −1 wraps round to a large number
-                if (inside) of_slot[slot] = grid.length(static_cast<Index>(first), slot);
-            }
+            const std::array<double, 8> of_slot = row_lengths(grid, row);
             for (std::size_t node = first; node < first + grid.cols; ++node) {
                 if (directions[node] != no_flow) length[node] = of_slot[directions[node]];
             }

@@ -17,6 +17,12 @@ struct FlowGraph {
     std::vector<Index> order;      ///< every node with data once, each after its receiver
 
     Index size() const { return static_cast<Index>(receiver.size()); }
+
+    /// Calls visit(receiver, length_m, share) where the node has a receiver; the share is 1.
+    template <class Visit>
+    void receivers(Index node, Visit visit) const {
+        if (receiver[node] != none) visit(receiver[node], length[node], 1.0);
+    }
 };
 
 /// Nodes with data (elevation not NaN), each after its receiver. Linear, without recursion; a function of the directions

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "terrain/compressed_flow.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "terrain/row_lengths.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/core/parallel.hpp"
+
+namespace thalweg::terrain {
+namespace {
+
+constexpr std::uint8_t placed = 255;
+
+/// How many donors each node has.
+std::vector<std::uint8_t> count_donors(const MultipleFlow& flow) {
+    std::vector<std::uint8_t> donors(flow.size(), 0);
+    for (const Index receiver : flow.receiver) ++donors[receiver];
+    return donors;
+}
+
+void write_row(const Grid& grid, Index row, std::span<const SlotBits> bits, MultipleFlow& flow) {
+    const std::array<double, 8> of_slot = row_lengths(grid, row);
+    const Index first = row * grid.cols;
+    Index at = flow.offset[first];
+    for (Index node = first; node < first + grid.cols; ++node) {
+        for (unsigned left = bits[node]; left != 0; left &= left - 1) {
+            const Slot slot = static_cast<Slot>(std::countr_zero(left));
+            flow.receiver[at] = grid.neighbor(node, slot);
+            flow.length[at] = of_slot[slot];
+            ++at;
+        }
+    }
+}
+
+}  // namespace
+
+void lay_out(std::span<const std::uint8_t> receivers_of, MultipleFlow& flow) {
+    flow.offset.resize(receivers_of.size() + 1);
+    std::uint64_t total = 0;
+    for (std::size_t node = 0; node < receivers_of.size(); ++node) {
+        flow.offset[node] = static_cast<Index>(total);
+        total += receivers_of[node];
+    }
+    if (total >= none) {
+        throw Error(
+            fmt::format("multiple flow on {} nodes has {} receivers, more than 32-bit numbers can name: use a "
+                        "coarser terrain or single flow",
+                        receivers_of.size(), total));
+    }
+    flow.offset.back() = static_cast<Index>(total);
+    flow.receiver.resize(total);
+    flow.length.resize(total);
+    flow.share.resize(total);
+}
+
+void write_receivers(const Grid& grid, std::span<const SlotBits> bits, const std::function<void(Index, Index)>& shares,
+                     MultipleFlow& flow) {
+    std::vector<std::uint8_t> receivers_of(bits.size());
+    for (std::size_t i = 0; i < bits.size(); ++i) receivers_of[i] = static_cast<std::uint8_t>(std::popcount(bits[i]));
+    lay_out(receivers_of, flow);
+    const auto rows = [&](Index first_row, Index last_row) {
+        for (Index row = first_row; row < last_row; ++row) {
+            write_row(grid, row, bits, flow);
+            shares(row * grid.cols, (row + 1) * grid.cols);
+        }
+    };
+    parallel_for(0, grid.rows, rows, std::max<Index>(1, 16384 / grid.cols));
+}
+
+/// From every node without donors down as far as all donors of a node have come by: donors before receivers, so the
+/// list is filled in from its end. `waiting` holds nodes whose donors are all placed.
+void write_order(std::span<const double> elevation_m, MultipleFlow& flow) {
+    std::vector<std::uint8_t> awaited = count_donors(flow);
+    flow.order.resize(flow.size());
+    Index free = flow.size();
+    std::vector<Index> waiting(flow.size() + 1);
+    for (Index leaf = 0; leaf < flow.size(); ++leaf) {
+        if (awaited[leaf] != 0 || std::isnan(elevation_m[leaf])) continue;
+        Index top = 0;
+        waiting[top++] = leaf;
+        while (top > 0) {
+            const Index node = waiting[--top];
+            flow.order[--free] = node;
+            awaited[node] = placed;
+            for (Index at = flow.offset[node]; at < flow.offset[node + 1]; ++at) {
+                const Index receiver = flow.receiver[at];
+                waiting[top] = receiver;  // kept only if nothing more is awaited there: no branch to mispredict
+                top += --awaited[receiver] == 0;
+            }
+        }
+    }
+    flow.order.erase(flow.order.begin(), flow.order.begin() + free);
+}
+
+}  // namespace thalweg::terrain
