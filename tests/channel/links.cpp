@@ -115,3 +115,63 @@ TEST_CASE("Offsets on a grid are metres to the east and north, on oblong cells a
     CHECK(there.x == -back.x);
     CHECK(there.y == -back.y);
 }
+
+namespace {
+
+/// A trunk that runs north from the mouth in unit steps, with a tributary of two nodes at each of the given heights,
+/// from the east (+1) or the west (−1).
+struct Comb {
+    terrain::FlowGraph graph;
+    std::vector<Point> at{{0, 0}};
+
+    explicit Comb(const std::vector<int>& sides) {
+        std::vector<Index> receiver{none};
+        const Index steps = 3 * static_cast<Index>(sides.size()) + 4;
+        for (Index i = 1; i <= steps; ++i) {
+            receiver.push_back(i - 1);
+            at.push_back({0, double(i)});
+        }
+        for (std::size_t k = 0; k < sides.size(); ++k) {
+            Index below = 3 * (static_cast<Index>(k) + 1);
+            for (int i = 1; i <= 2; ++i) {
+                const double x = sides[k] * i, y = at[below].y + (i == 1 ? 0.3 : 0.0);
+                receiver.push_back(below);
+                below = static_cast<Index>(receiver.size()) - 1;
+                at.push_back({x, y});
+            }
+        }
+        graph = graph_of(receiver);
+    }
+};
+
+}  // namespace
+
+TEST_CASE("Of a trunk's links those whose tributaries come from one side are cis, the others trans") {
+    const Comb comb({1, 1, -1, -1, 1, -1});  // between them: cis, trans, cis, trans, trans
+    const CisTrans found = cis_trans_links(network_of(comb.graph), offsets_of(comb.at), 1.5);
+    CHECK(found.cis.count == 2);
+    CHECK(found.trans.count == 3);
+    CHECK(found.cis_share == Approx(0.4));
+    CHECK(found.cis.mean_m == 3);
+    std::vector<Point> mirrored = comb.at, turned = comb.at;
+    for (Point& p : mirrored) p.x = -p.x;
+    for (Point& p : turned) p = {p.x * 0.6 - p.y * 0.8, p.x * 0.8 + p.y * 0.6};
+    for (const auto& at : {mirrored, turned}) {
+        CHECK(cis_trans_links(network_of(comb.graph), offsets_of(at), 1.5).cis.count == 2);
+    }
+}
+
+TEST_CASE("Links at a mouth, at sources and beside triple junctions are neither cis nor trans") {
+    const Comb one({1});
+    const CisTrans found = cis_trans_links(network_of(one.graph), offsets_of(one.at), 1.5);
+    CHECK(found.cis.count == 0);
+    CHECK(found.trans.count == 0);
+    CHECK(std::isnan(found.cis_share));
+    const Comb two({1, 1});
+    auto receiver = two.graph.receiver;
+    auto at = two.at;
+    receiver.push_back(3);  // a third river joins at the lower junction
+    at.push_back({-1, 3});
+    CHECK(cis_trans_links(network_of(graph_of(receiver)), offsets_of(at), 1.5).cis.count == 0);
+    CHECK(cis_trans_links(network_of(two.graph), offsets_of(two.at), 1.5).cis.count == 1);
+}

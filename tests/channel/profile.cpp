@@ -6,7 +6,9 @@
 
 #include "support/flow_trees.hpp"
 #include "support/steady_landscape.hpp"
+#include "thalweg/channel/concavity.hpp"
 #include "thalweg/channel/network.hpp"
+#include "thalweg/core/random.hpp"
 
 using namespace thalweg;
 using namespace thalweg::channel;
@@ -112,7 +114,7 @@ TEST_CASE("A profile holds the channel nodes alone, receivers first, and numbers
 
 TEST_CASE("Chi's linearity finds the concavity of a steady river with tributaries, on and between the grid's values") {
     for (const double theta : {0.2, 0.35, 0.45, 0.5125, 0.8, 1.1}) {
-        const Estimate best = concavity_by_chi(forest(8, theta, 0, 1).profile());
+        const Estimate best = concavity(forest(8, theta, 0, 1).profile()).linearity;
         CHECK(best.value == Approx(theta).margin(1e-3));
         CHECK(best.interval95[0] == Approx(theta).margin(2e-3));
         CHECK(best.interval95[1] == Approx(theta).margin(2e-3));
@@ -126,7 +128,7 @@ TEST_CASE("On a steady raster chi's linearity finds the concavity as well") {
         const auto dem = support::routed_dem(grid, height);
         const auto channels = channels_by_area(dem.area_m2, 20 * 8100.0);
         const auto profile = channel_profile(dem.graph, channels, dem.area_m2, dem.carved_m);
-        CHECK(concavity_by_chi(profile).value == Approx(theta).margin(0.005));
+        CHECK(concavity(profile).linearity.value == Approx(theta).margin(0.005));
     }
 }
 
@@ -134,7 +136,7 @@ TEST_CASE("The interval of the bootstrap holds the truth in about 95 of 100 scat
     int held = 0, width = 0;
     constexpr int landscapes = 60;
     for (std::uint32_t seed = 0; seed < landscapes; ++seed) {
-        const Estimate best = concavity_by_chi(forest(25, 0.45, 0.3, seed).profile());
+        const Estimate best = concavity(forest(25, 0.45, 0.3, seed).profile()).linearity;
         held += best.interval95[0] <= 0.45 && 0.45 <= best.interval95[1];
         width += best.interval95[1] - best.interval95[0] < 0.2;
         CHECK(best.value == Approx(0.45).margin(0.1));
@@ -145,13 +147,13 @@ TEST_CASE("The interval of the bootstrap holds the truth in about 95 of 100 scat
 }
 
 TEST_CASE("Too few rivers give no error, and a river that is no river gives no concavity") {
-    const Estimate few = concavity_by_chi(forest(4, 0.45, 0, 1).profile());
+    const Estimate few = concavity(forest(4, 0.45, 0, 1).profile()).linearity;
     CHECK(few.value == Approx(0.45).margin(1e-3));
     CHECK(std::isnan(few.standard_error));
-    CHECK(std::isnan(concavity_by_chi(Profile{}).value));
+    CHECK(std::isnan(concavity(Profile{}).linearity.value));
     River flat = forest(6, 0.45, 0, 1);
     flat.height.assign(flat.height.size(), 5);
-    CHECK(std::isnan(concavity_by_chi(flat.profile()).value));
-    const Estimate again = concavity_by_chi(forest(9, 0.45, 0.3, 2).profile());
-    CHECK(again.standard_error == concavity_by_chi(forest(9, 0.45, 0.3, 2).profile()).standard_error);
+    CHECK(std::isnan(concavity(flat.profile()).linearity.value));
+    const Estimate again = concavity(forest(9, 0.45, 0.3, 2).profile()).linearity;
+    CHECK(again.standard_error == concavity(forest(9, 0.45, 0.3, 2).profile()).linearity.standard_error);
 }

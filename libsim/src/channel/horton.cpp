@@ -11,30 +11,6 @@ namespace thalweg::channel {
 
 namespace {
 
-struct Stream {
-    Index order;
-    double length_m, drop_m, area_m2;
-};
-
-/// Chains of links of one order, outlets first. At most one inflow of a link has the link's own order, so a stream
-/// never forks.
-std::vector<Stream> strahler_streams(const StreamNetwork& network) {
-    std::vector<Stream> streams;
-    std::vector<Index> of_link(network.size());
-    for (Index link = 0; link < network.size(); ++link) {
-        const Index below = network.downstream[link];
-        if (below != none && network.strahler[below] == network.strahler[link]) {
-            of_link[link] = of_link[below];
-        } else {
-            of_link[link] = static_cast<Index>(streams.size());
-            streams.push_back({network.strahler[link], 0, 0, network.area_m2[link]});
-        }
-        streams[of_link[link]].length_m += network.length_m[link];
-        streams[of_link[link]].drop_m += network.drop_m[link];
-    }
-    return streams;
-}
-
 /// Ratio by which a statistic grows from order to order; orders where it is not positive are left out.
 HortonRatio growth(const std::vector<OrderStatistics>& orders, double (*statistic)(const OrderStatistics&)) {
     std::vector<double> order, logarithm, ratio;
@@ -54,12 +30,29 @@ HortonRatio growth(const std::vector<OrderStatistics>& orders, double (*statisti
 
 }  // namespace
 
+std::vector<StrahlerStream> strahler_streams(const StreamNetwork& network) {
+    std::vector<StrahlerStream> streams;
+    std::vector<Index> of_link(network.size());
+    for (Index link = 0; link < network.size(); ++link) {
+        const Index below = network.downstream[link];
+        if (below != none && network.strahler[below] == network.strahler[link]) {
+            of_link[link] = of_link[below];
+        } else {
+            of_link[link] = static_cast<Index>(streams.size());
+            streams.push_back({network.strahler[link], 0, 0, network.area_m2[link]});
+        }
+        streams[of_link[link]].length_m += network.length_m[link];
+        streams[of_link[link]].drop_m += network.drop_m[link];
+    }
+    return streams;
+}
+
 std::vector<OrderStatistics> strahler_statistics(const StreamNetwork& network) {
     if (network.size() == 0) return {};
     const Index highest = *std::ranges::max_element(network.strahler);
     std::vector<OrderStatistics> orders(highest);
     for (Index i = 0; i < highest; ++i) orders[i] = {i + 1, 0, 0, 0, 0, 0};
-    for (const Stream& stream : strahler_streams(network)) {
+    for (const StrahlerStream& stream : strahler_streams(network)) {
         OrderStatistics& sum = orders[stream.order - 1];
         ++sum.streams;
         sum.mean_length_m += stream.length_m;

@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -46,6 +48,24 @@ Point upstream_direction(std::span<const Index> nodes, const OffsetOf& offset, d
     return offset(nodes.back(), nodes[at]);
 }
 
+/// From the link's upper end down to where its direction is taken.
+Point downstream_direction(std::span<const Index> nodes, const OffsetOf& offset, double reach_m) {
+    double along = 0;
+    std::size_t at = 0;
+    while (at + 1 < nodes.size() && along < reach_m) {
+        const Point step = offset(nodes[at], nodes[at + 1]);
+        along += std::hypot(step.x, step.y);
+        ++at;
+    }
+    return offset(nodes.front(), nodes[at]);
+}
+
+/// Counterclockwise from one direction to another, in [0, 2π).
+double turn(const Point& from, const Point& to) {
+    const double angle = std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
+    return angle < 0 ? angle + 2 * std::numbers::pi : angle;
+}
+
 double angle_between(const Point& a, const Point& b) {
     return std::abs(std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
 }
@@ -55,7 +75,39 @@ double slope_ratio(const StreamNetwork& network, Index below, Index inflow, doub
     return std::pow((2.0 * network.shreve[below] - 1) / (2.0 * network.shreve[inflow] - 1), flint_exponent);
 }
 
+/// The two inflows of a junction, the main one first.
+std::array<Index, 2> main_and_tributary(const StreamNetwork& network, const Inflows& in) {
+    const auto [a, b] = in.link;
+    return network.area_m2[b] > network.area_m2[a] ? std::array{b, a} : std::array{a, b};
+}
+
+/// Whether the tributary that joins above `below` comes from the left, looking downstream.
+bool from_the_left(const StreamNetwork& network, const OffsetOf& offset, double reach_m, const Inflows& in,
+                   Index below) {
+    const auto [main, tributary] = main_and_tributary(network, in);
+    const Point down = downstream_direction(network.nodes_of(below), offset, reach_m);
+    return turn(down, upstream_direction(network.nodes_of(tributary), offset, reach_m)) <
+           turn(down, upstream_direction(network.nodes_of(main), offset, reach_m));
+}
+
 }  // namespace
+
+CisTrans cis_trans_links(const StreamNetwork& network, const OffsetOf& offset, double reach_m) {
+    const auto inflows_of = inflows(network);
+    std::vector<double> cis, trans;
+    for (Index link = 0; link < network.size(); ++link) {
+        const Index below = network.downstream[link];
+        if (below == none || inflows_of[link].count != 2 || inflows_of[below].count != 2) continue;
+        if (main_and_tributary(network, inflows_of[below])[0] != link) continue;
+        const bool left_above = from_the_left(network, offset, reach_m, inflows_of[link], link);
+        const bool left_below = from_the_left(network, offset, reach_m, inflows_of[below], below);
+        (left_above == left_below ? cis : trans).push_back(network.length_m[link]);
+    }
+    const auto all = static_cast<double>(cis.size() + trans.size());
+    return {.cis = statistics(cis),
+            .trans = statistics(trans),
+            .cis_share = all > 0 ? static_cast<double>(cis.size()) / all : std::numeric_limits<double>::quiet_NaN()};
+}
 
 LinkLengths link_lengths(const StreamNetwork& network) {
     std::vector<double> exterior, interior;

@@ -7,6 +7,16 @@
 
 namespace thalweg::channel {
 
+/// A chain of links of one Strahler order.
+struct StrahlerStream {
+    Index order;
+    double length_m, drop_m;
+    double area_m2;  ///< drainage area at its lower end
+};
+
+/// Every stream, outlets first. At most one inflow of a link has the link's own order, so a stream never forks.
+std::vector<StrahlerStream> strahler_streams(const StreamNetwork&);
+
 /// Strahler streams of one order: chains of links of that order.
 struct OrderStatistics {
     Index order;

@@ -47,6 +47,19 @@ struct JunctionAngles {
 /// with the links' magnitudes u: of single links' slopes the lower is often the steeper one. Linear.
 JunctionAngles junction_angles(const StreamNetwork&, const OffsetOf&, double reach_m, double flint_exponent);
 
+/// Interior links of a stream by the sides from which the tributaries at their two ends come (James & Krumbein 1969):
+/// cis from the same side, trans from opposite sides.
+struct CisTrans {
+    LengthStatistics cis, trans;
+    double cis_share;  ///< of both; NaN where there is none
+};
+
+/// Of the links that have exactly two inflows at their upper end, flow on as the main inflow (the larger area) of a
+/// junction of exactly two at their lower end, and leave it by a link. A tributary is the inflow with the smaller area
+/// (ties: the later one); it comes from the left if it lies left of the way from the main inflow to the link below,
+/// looking downstream. Directions are taken over `reach_m` as for the angles. Linear.
+CisTrans cis_trans_links(const StreamNetwork&, const OffsetOf&, double reach_m);
+
 /// Ten mean distances between neighbouring nodes of the network (m).
 double junction_reach(const StreamNetwork&);
 

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "thalweg/core/statistics.hpp"
 #include "thalweg/terrain/graph.hpp"
 
 namespace thalweg::channel {
@@ -35,18 +34,5 @@ std::vector<double> chi(const Profile&, double theta, double reference_area_m2);
 /// ends before it has fallen so far. `chi_m` as chi() gave it for the same θ and A0.
 std::vector<double> steepness(const Profile&, std::span<const double> chi_m, double theta, double reference_area_m2,
                               double smallest_drop_m);
-
-struct ConcavityOptions {
-    Index smallest_river = 20;  ///< nodes below which a river does not count
-    Index smallest_sample = 5;  ///< rivers below which there is no error
-    Index resamples = 500;
-    std::uint64_t seed = 1;
-};
-
-/// The θ between 0 and 1.5 for which elevation is most nearly linear in χ (Perron & Royden 2013), trunk and tributaries
-/// alike: the least sum over the rivers of nodes·(1 − R²), each river (all that flows to one base) with a line of its
-/// own, on a grid of 0.025 refined by a parabola. NaN where the least lies at an end. The error is the spread of a
-/// bootstrap over the rivers, the interval its 2.5 and 97.5 % quantiles; NaN for fewer than `smallest_sample` rivers.
-Estimate concavity_by_chi(const Profile&, const ConcavityOptions& = {});
 
 }  // namespace thalweg::channel
