@@ -261,7 +261,7 @@ ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions& opt
     std::vector<double> known;
     std::ranges::copy_if(c.ksn, std::back_inserter(known), [](double value) { return !std::isnan(value); });
     c.ksn_median = quantile(std::move(known), 0.5);
-    c.theta_best = channel::concavity_by_chi(c.profile);
+    c.theta_best = channel::concavity(c.profile).linearity;
     return c;
 }
 

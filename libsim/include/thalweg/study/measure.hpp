@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "thalweg/channel/concavity.hpp"
 #include "thalweg/channel/extent.hpp"
 #include "thalweg/channel/horton.hpp"
 #include "thalweg/channel/laws.hpp"
