@@ -68,7 +68,7 @@ TEST_CASE("A relative erodibility of 1 everywhere is the same as none, and half 
     Setting setting = support::island(grid, 1e-3);
     const auto after = [&](double k) {
         Landscape landscape = support::rough_start(setting, 5, 2);
-        simulate(grid, {.k = k, .m = 0.5, .n = 1.3}, setting, {.step_yr = 1e4, .max_steps = 30}, landscape);
+        simulate(grid, {{.k = k, .m = 0.5, .n = 1.3}}, setting, {.step_yr = 1e4, .max_steps = 30}, landscape);
         return landscape.elevation_m;
     };
     const auto plain = after(4e-6), harder = after(2e-6);

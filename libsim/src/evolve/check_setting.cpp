@@ -38,6 +38,10 @@ void check_river(const River& river) {
     if (!(river.n >= 0.3 && river.n <= 5)) {
         throw Error(fmt::format("the slope exponent n must lie between 0.3 and 5, not {}", river.n));
     }
+    if (!(river.flow_exponent > 0 && std::isfinite(river.flow_exponent))) {
+        throw Error(
+            fmt::format("the exponent of multiple flow must be a positive number, not {}", river.flow_exponent));
+    }
     if (!(river.talus_slope > 0)) {
         throw Error(fmt::format("the talus slope must be positive, not {}", river.talus_slope));
     }

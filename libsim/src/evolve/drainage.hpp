@@ -45,16 +45,49 @@ void accumulate_rain(const Edges& edges, const std::vector<double>& rainfall, co
     }
 }
 
+/// The same along divided flow.
+template <class Edges>
+void accumulate_rain(const Edges& edges, const std::vector<double>& rainfall, const terrain::MultipleFlow& flow,
+                     std::vector<double>& area_m2) {
+    area_m2.assign(flow.size(), 0.0);
+    const std::vector<Index>& order = flow.order;
+    for (std::size_t at = order.size(); at-- > 0;) {
+        if (at >= 2 * ahead) __builtin_prefetch(&flow.offset[order[at - 2 * ahead]]);
+        if (at >= ahead) {
+            const Index later = order[at - ahead];
+            __builtin_prefetch(&area_m2[later]);
+            __builtin_prefetch(&rainfall[later]);
+            __builtin_prefetch(&flow.receiver[flow.offset[later]]);
+            __builtin_prefetch(&flow.share[flow.offset[later]]);
+        }
+        const Index node = order[at];
+        const double area = area_m2[node] + edges.area(node) * rainfall[node];
+        area_m2[node] = area;
+        for (Index to = flow.offset[node]; to < flow.offset[node + 1]; ++to) {
+            area_m2[flow.receiver[to]] += flow.share[to] * area;
+        }
+    }
+}
+
 /// Drainage of a landscape into buffers that live as long as the simulation.
 template <Topology T>
-void drain_into(const T& topology, const Landscape& landscape, const Setting& setting, terrain::Receiver receiver,
+void drain_into(const T& topology, const Landscape& landscape, const Setting& setting, const River& river,
                 const FlowDirections& frozen, Drainage& drainage) {
     const auto& elevation_m = landscape.elevation_m;
-    drainage.directions = terrain::route(topology, elevation_m, setting.boundary, receiver);
+    drainage.directions = terrain::route(topology, elevation_m, setting.boundary, river.receiver);
     if (!frozen.empty()) {
         with_edges(topology, [&](const auto& edges) { keep_frozen(edges, elevation_m, frozen, drainage.directions); });
     }
     drainage.lakes = terrain::drain_lakes(topology, elevation_m, setting.boundary, drainage.directions);
+    if (river.flow == Flow::multiple) {
+        const terrain::Division division{.exponent = river.flow_exponent};
+        terrain::multiple_flow(topology, elevation_m, drainage.directions, division, drainage.flow);
+        drainage.order = drainage.flow.order;
+        with_edges(topology, [&](const auto& edges) {
+            accumulate_rain(edges, setting.rainfall, drainage.flow, drainage.area_m2);
+        });
+        return;
+    }
     drainage.order = terrain::downstream_first_order(topology, elevation_m, drainage.directions);
     with_edges(topology, [&](const auto& edges) {
         accumulate_rain(edges, setting.rainfall, drainage.directions, drainage.order, drainage.area_m2);

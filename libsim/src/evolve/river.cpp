@@ -2,6 +2,7 @@
 #include "thalweg/evolve/river.hpp"
 
 #include "evolve/check_setting.hpp"
+#include "evolve/divided_erosion.hpp"
 #include "evolve/drainage.hpp"
 #include "evolve/erosion.hpp"
 
@@ -9,12 +10,12 @@ namespace thalweg::evolve {
 namespace {
 
 template <Topology T>
-Drainage drained(const T& topology, const Landscape& landscape, const Setting& setting, terrain::Receiver receiver,
+Drainage drained(const T& topology, const Landscape& landscape, const Setting& setting, const River& river,
                  const FlowDirections& frozen) {
     check_setting(topology.size(), landscape, setting);
     check_frozen(topology.size(), frozen);
     Drainage drainage;
-    drain_into(topology, landscape, setting, receiver, frozen, drainage);
+    drain_into(topology, landscape, setting, river, frozen, drainage);
     return drainage;
 }
 
@@ -25,20 +26,61 @@ StepReport eroded(const T& topology, const Drainage& drainage, const River& rive
     check_river(river);
     check_step(dt_yr);
     return with_edges(topology, [&](const auto& edges) {
-        return erode_along(edges, drainage, river, SlopeSolver(river.n), setting, dt_yr, landscape).report(dt_yr);
+        return dig(edges, drainage, river, SlopeSolver(river.n), setting, dt_yr, landscape).report(dt_yr);
     });
+}
+
+template <class Edges>
+std::vector<double> slopes(const Edges& edges, const Drainage& drainage, const River& river,
+                           std::span<const double> elevation_m) {
+    std::vector<double> slope(elevation_m.size(), std::numeric_limits<double>::quiet_NaN());
+    const auto fall = [&](Index node, Index receiver, double length) {
+        return std::max(0.0, elevation_m[node] - elevation_m[receiver]) / length;
+    };
+    for (const Index node : drainage.order) {
+        const Slot slot = drainage.directions[node];
+        if (slot == no_flow) continue;
+        slope[node] = fall(node, edges.neighbor(node, slot), edges.length(node, slot));
+        if (drainage.flow.size() == 0 || drainage.flow.offset[node + 1] - drainage.flow.offset[node] < 2) continue;
+        double power = 0;
+        drainage.flow.receivers(node, [&](Index receiver, double length, double share) {
+            power += share * std::pow(fall(node, receiver, length), river.n);
+        });
+        slope[node] = std::pow(power, 1 / river.n);
+    }
+    return slope;
 }
 
 }  // namespace
 
 Drainage drain(const Grid& grid, const Landscape& landscape, const Setting& setting, terrain::Receiver receiver,
                const FlowDirections& frozen) {
-    return drained(grid, landscape, setting, receiver, frozen);
+    return drained(grid, landscape, setting, {.receiver = receiver}, frozen);
 }
 
 Drainage drain(const Mesh& mesh, const Landscape& landscape, const Setting& setting, terrain::Receiver receiver,
                const FlowDirections& frozen) {
-    return drained(mesh, landscape, setting, receiver, frozen);
+    return drained(mesh, landscape, setting, {.receiver = receiver}, frozen);
+}
+
+Drainage drain(const Grid& grid, const Landscape& landscape, const Setting& setting, const River& river,
+               const FlowDirections& frozen) {
+    return drained(grid, landscape, setting, river, frozen);
+}
+
+Drainage drain(const Mesh& mesh, const Landscape& landscape, const Setting& setting, const River& river,
+               const FlowDirections& frozen) {
+    return drained(mesh, landscape, setting, river, frozen);
+}
+
+std::vector<double> slopes_along_flow(const Grid& grid, const Drainage& drainage, const River& river,
+                                      const Landscape& landscape) {
+    return slopes(grid, drainage, river, landscape.elevation_m);
+}
+
+std::vector<double> slopes_along_flow(const Mesh& mesh, const Drainage& drainage, const River& river,
+                                      const Landscape& landscape) {
+    return slopes(mesh, drainage, river, landscape.elevation_m);
 }
 
 StepReport erode(const Grid& grid, const Drainage& drainage, const River& river, const Setting& setting, double dt_yr,

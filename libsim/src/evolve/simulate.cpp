@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "evolve/check_setting.hpp"
+#include "evolve/divided_erosion.hpp"
 #include "evolve/drainage.hpp"
 #include "evolve/erosion.hpp"
 
@@ -52,7 +53,7 @@ struct Run {
 template <Topology T>
 bool drains_as_before(const Run<T>& run, const SimulationState& state) {
     Drainage now;
-    drain_into(run.topology, state.landscape, run.setting, run.model.river.receiver, state.exchange.frozen, now);
+    drain_into(run.topology, state.landscape, run.setting, run.model.river, state.exchange.frozen, now);
     return now.directions == run.drainage.directions;
 }
 
@@ -66,6 +67,7 @@ void judge(const Run<T>& run, double moved_m3, double uplifted_m3, SimulationSta
         state.converged = true;
         return;
     }
+    if (run.model.river.flow == Flow::multiple) return;  // shares change little by little: there is nothing to freeze
     observe(state.exchange, run.drainage.directions);
     observe(state.slackening, moved_m3);
     const bool nearly_at_rest = moved_m3 < freezing_share * uplifted_m3 && state.slackening.steps >= patience;
@@ -80,9 +82,9 @@ template <Topology T>
 StepReport step(Run<T>& run, SimulationState& state) {
     Landscape& landscape = state.landscape;
     const River& river = run.model.river;
-    drain_into(run.topology, landscape, run.setting, river.receiver, state.exchange.frozen, run.drainage);
+    drain_into(run.topology, landscape, run.setting, river, state.exchange.frozen, run.drainage);
     const StepSums sums = with_edges(run.topology, [&](const auto& edges) {
-        return erode_along(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr, landscape);
+        return dig(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr, landscape);
     });
     const StepReport report = sums.report(run.options.step_yr);
     ++state.steps;
@@ -170,8 +172,14 @@ std::vector<std::uint8_t> talus_mask(const Edges& edges, const Drainage& drainag
     for (const Index node : drainage.order) {
         const Slot slot = drainage.directions[node];
         if (slot == no_flow) continue;
-        const double drop = elevation_m[node] - elevation_m[edges.neighbor(node, slot)];
-        mask[node] = drop >= river.talus_slope * edges.length(node, slot) * (1 - 1e-9);
+        const auto at_limit = [&](Index receiver, double length) {
+            return elevation_m[node] - elevation_m[receiver] >= river.talus_slope * length * (1 - 1e-9);
+        };
+        mask[node] = at_limit(edges.neighbor(node, slot), edges.length(node, slot));
+        if (drainage.flow.size() == 0) continue;
+        drainage.flow.receivers(node, [&](Index receiver, double length, double) {
+            if (at_limit(receiver, length)) mask[node] = 1;
+        });
     }
     return mask;
 }

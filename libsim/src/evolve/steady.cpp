@@ -57,6 +57,11 @@ void integrate(const Edges& edges, const Drainage& drainage, const SteadySlope& 
 /// Every node must have a finite steady slope whatever water it gets: rain on its own cell is the least.
 template <Topology T>
 void check_steady(const T& topology, const River& river, const Setting& setting) {
+    if (river.flow == Flow::multiple) {
+        throw Error(
+            "the steady solver follows one receiver per node: use the implicit solver for multiple flow, or "
+            "single flow");
+    }
     if (std::isfinite(river.talus_slope)) return;
     for (Index node = 0; node < topology.size(); ++node) {
         if (setting.boundary[node] == Boundary::base_level || !(setting.uplift_m_per_yr[node] > 0)) continue;
@@ -81,7 +86,7 @@ SteadyResult solved(const T& topology, const River& river, const Setting& settin
     Drainage drainage;
     SteadyResult result{.sweeps = 0, .converged = false, .frozen_receivers = 0, .frozen = {}};
     while (result.sweeps < max_sweeps) {
-        drain_into(topology, landscape, setting, river.receiver, exchange.frozen, drainage);
+        drain_into(topology, landscape, setting, river, exchange.frozen, drainage);
         const Index changes = observe(exchange, drainage.directions);
         result.converged = result.sweeps > 0 && changes == 0;
         if (result.converged) break;

@@ -8,17 +8,27 @@
 #include "thalweg/core/grid.hpp"
 #include "thalweg/core/mesh.hpp"
 #include "thalweg/evolve/landscape.hpp"
+#include "thalweg/terrain/multiple_flow.hpp"
 #include "thalweg/terrain/route.hpp"
 
 namespace thalweg::evolve {
 
+/// Whether a node gives its water to one neighbour or divides it among its lower ones.
+enum class Flow { single, multiple };
+
 /// Stream-power incision dh/dt = u − k·A^m·S^n (Whipple & Tucker 1999), with the talus limit of Musgrave et al. 1989.
+///
+/// Where flow divides, S^n is averaged over where the water goes, Σ w_r·S_r^n with the shares w_r of
+/// `terrain::multiple_flow` at the beginning of the step, and A is the divided area. With all receivers equally steep
+/// that is the law of one receiver, whatever their number (decisions/2026-11-22-multiple-flow.md).
 struct River {
     double k = 0;                                                  ///< erodibility, m^(1−2m)/yr
     double m = 0.5;                                                ///< area exponent
     double n = 1;                                                  ///< slope exponent, 0.3 … 5
     double talus_slope = std::numeric_limits<double>::infinity();  ///< tan of the steepest stable angle; infinity: off
     terrain::Receiver receiver = terrain::Receiver::steepest;
+    Flow flow = Flow::single;
+    double flow_exponent = 1.1;  ///< of the slopes in the shares (Freeman 1991)
 };
 
 /// Volumes moved in one step or many (m³), each summed from its own law and not from the difference it should close.
@@ -40,6 +50,7 @@ struct Drainage {
     std::vector<Index> order;     ///< receivers before donors
     std::vector<double> area_m2;  ///< effective drainage area: rainfall-weighted
     Index lakes = 0;
+    terrain::MultipleFlow flow = {};  ///< where flow divides; else empty
 };
 
 /// Routes, leads lakes over their passes, orders the nodes and adds up the rain: linear in the nodes but for the
@@ -47,6 +58,11 @@ struct Drainage {
 /// empty: all are free.
 Drainage drain(const Grid&, const Landscape&, const Setting&, terrain::Receiver, const FlowDirections& frozen = {});
 Drainage drain(const Mesh&, const Landscape&, const Setting&, terrain::Receiver, const FlowDirections& frozen = {});
+
+/// The same with the flow of the river: if it divides, `directions` are the single ones that lakes and flats follow,
+/// and order and area those of the divided flow.
+Drainage drain(const Grid&, const Landscape&, const Setting&, const River&, const FlowDirections& frozen = {});
+Drainage drain(const Mesh&, const Landscape&, const Setting&, const River&, const FlowDirections& frozen = {});
 
 /// What a step did besides changing the landscape.
 struct StepReport {
@@ -61,12 +77,21 @@ struct StepReport {
 /// b); then the talus limit. First order in time, stable for every dt; linear in the nodes, one call of pow per node
 /// where n ≠ 1 (and one where m is neither 0.5 nor 1).
 ///
+/// Along divided flow x solves x = b − dt·k·A^m·Σ w_r·((x − h_r)/d_r)^n over the receivers that end below x: there is
+/// one such x, in closed form for n = 1, else by Newton's rule in a bracket (one pow per receiver and iteration). The
+/// talus limit holds towards the steepest receiver.
+///
 /// A node without receiver keeps its height and is in no term: base level, an `open` node with no lower neighbour, and
 /// the lowest node of a connected piece that has no outlet at all. Nodes without data (NaN) stay as they are.
 /// Throws Error if sizes do not fit, k or m is negative, n is outside [0.3, 5], or the talus slope or dt is not
 /// positive.
 StepReport erode(const Grid&, const Drainage&, const River&, const Setting&, double dt_yr, Landscape&);
 StepReport erode(const Mesh&, const Drainage&, const River&, const Setting&, double dt_yr, Landscape&);
+
+/// Slope of every node along its flow as the law sees it: S to the receiver, or (Σ w_r·S_r^n)^(1/n) over several;
+/// uphill counts as 0. Steady nodes stand at (u/k)^(1/n)·A^(−m/n). NaN without receiver.
+std::vector<double> slopes_along_flow(const Grid&, const Drainage&, const River&, const Landscape&);
+std::vector<double> slopes_along_flow(const Mesh&, const Drainage&, const River&, const Landscape&);
 
 /// Slope S ≥ 0 that solves drop = L·S + c·S^n, that is the end-of-step slope over length L of a node `drop` above its
 /// receiver before erosion, with c = dt·k·A^m. Bounded iterations, for n from 0.3 to 5, to the last bits; 0 without
