@@ -131,7 +131,7 @@ void check_steady(const T& topology, double n) {
     const River river = dividing(erodibility(m, n), m, n);
     const Setting setting = support::island(topology, uplift);
     Landscape landscape = support::rough_start(setting, 10, 4);
-    simulate(topology, {river}, setting, {.step_yr = 1e5, .max_steps = 1000, .convergence = 1e-11}, landscape);
+    simulate(topology, {river}, setting, {.step_yr = 1e5, .max_steps = 2000, .convergence = 1e-11}, landscape);
     const Drainage drainage = drain(topology, landscape, setting, river);
     const std::vector<double> slope = slopes_along_flow(topology, drainage, river, landscape);
     CHECK(drainage.lakes == 0);
