@@ -59,6 +59,10 @@ solver = "steady"
 max_steps = 1e3
 [output]
 resolution = 256
+interpolation = "natural"
+heightmap = "png"
+mesh_file = "ply"
+solid = true
 )");
     CHECK(e.seed == 7);
     CHECK(e.outlets == OutletRule::all);
@@ -73,6 +77,10 @@ resolution = 256
     CHECK(e.time.solver == Solver::steady);
     CHECK(e.time.max_steps == 1000);
     CHECK(e.output.resolution == Index{256});
+    CHECK(e.output.interpolation == Interpolation::natural);
+    CHECK(e.output.heightmap == HeightmapFile::png);
+    CHECK(e.output.mesh_file == MeshFile::ply);
+    CHECK(e.output.solid);
 }
 
 TEST_CASE("Overrides replace values and need no quotes") {

@@ -16,7 +16,8 @@
 namespace thalweg::io {
 namespace {
 
-constexpr int tile = 256;
+constexpr Index tile = 256;
+constexpr Index cloud_tile = 512;
 
 [[noreturn]] void unwritten(const std::filesystem::path& path, const GdalGuard& gdal) {
     throw Error(fmt::format("{} could not be written whole{}", path.string(), because(gdal)));
@@ -27,15 +28,29 @@ GDALDataType gdal_type(CellType type) {
     return type == CellType::uint8 ? GDT_Byte : GDT_Int32;
 }
 
-CPLStringList creation_options(GDALDriver& driver, CellType type) {
+bool offers_zstd(GDALDriver& driver) {
     const char* offered = driver.GetMetadataItem(GDAL_DMD_CREATIONOPTIONLIST);
-    const bool zstd = offered != nullptr && std::string(offered).find("<Value>ZSTD</Value>") != std::string::npos;
+    return offered != nullptr && std::string(offered).find("<Value>ZSTD</Value>") != std::string::npos;
+}
+
+CPLStringList creation_options(GDALDriver& driver, CellType type) {
     CPLStringList options;
     options.SetNameValue("TILED", "YES");
     options.SetNameValue("BLOCKXSIZE", fmt::format("{}", tile).c_str());
     options.SetNameValue("BLOCKYSIZE", fmt::format("{}", tile).c_str());
-    options.SetNameValue("COMPRESS", zstd ? "ZSTD" : "DEFLATE");
+    options.SetNameValue("COMPRESS", offers_zstd(driver) ? "ZSTD" : "DEFLATE");
     options.SetNameValue("PREDICTOR", type == CellType::float64 ? "3" : "2");
+    options.SetNameValue("BIGTIFF", "IF_SAFER");
+    return options;
+}
+
+CPLStringList cloud_options(GDALDriver& driver, CellType type) {
+    CPLStringList options;
+    options.SetNameValue("BLOCKSIZE", fmt::format("{}", cloud_tile).c_str());
+    options.SetNameValue("COMPRESS", offers_zstd(driver) ? "ZSTD" : "DEFLATE");
+    options.SetNameValue("PREDICTOR", "YES");
+    options.SetNameValue("OVERVIEW_RESAMPLING", type == CellType::float64 ? "AVERAGE" : "NEAREST");
+    options.SetNameValue("NUM_THREADS", "1");
     options.SetNameValue("BIGTIFF", "IF_SAFER");
     return options;
 }
@@ -81,13 +96,14 @@ void describe(GDALRasterBand& band, const Layer& layer) {
 }
 
 /// GDAL's close cannot fail, so a full disk can leave a file that looks complete: every tile must lie inside it.
-bool tiles_lie_inside(const std::filesystem::path& path, const Grid& grid) {
+bool tiles_lie_inside(const std::filesystem::path& path, const Grid& grid, Layout layout) {
     const DatasetPtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER));
     if (!dataset) return false;
     const std::uintmax_t size = std::filesystem::file_size(path);
     GDALRasterBand& band = *dataset->GetRasterBand(1);
-    for (Index y = 0; y * tile < grid.rows; ++y) {
-        for (Index x = 0; x * tile < grid.cols; ++x) {
+    const Index size_of_tile = layout == Layout::tiled ? tile : cloud_tile;
+    for (Index y = 0; y * size_of_tile < grid.rows; ++y) {
+        for (Index x = 0; x * size_of_tile < grid.cols; ++x) {
             const char* offset = band.GetMetadataItem(fmt::format("BLOCK_OFFSET_{}_{}", x, y).c_str(), "TIFF");
             const char* bytes = band.GetMetadataItem(fmt::format("BLOCK_SIZE_{}_{}", x, y).c_str(), "TIFF");
             if (offset == nullptr || bytes == nullptr) return false;
@@ -97,21 +113,40 @@ bool tiles_lie_inside(const std::filesystem::path& path, const Grid& grid) {
     return true;
 }
 
+CPLErr fill(GDALDataset& dataset, const Grid& grid, const Placement& placement, std::vector<double>& cells,
+            const Layer& layer) {
+    place(dataset, placement);
+    GDALRasterBand& band = *dataset.GetRasterBand(1);
+    describe(band, layer);
+    const int cols = static_cast<int>(grid.cols), rows = static_cast<int>(grid.rows);
+    return band.RasterIO(GF_Write, 0, 0, cols, rows, cells.data(), cols, rows, GDT_Float64, 0, 0, nullptr);
+}
+
+/// The driver for cloud-optimized files copies only, so those are made in memory first.
+CPLErr write_cells(const std::filesystem::path& path, const Grid& grid, const Placement& placement,
+                   std::vector<double> cells, const Layer& layer, GdalGuard& gdal) {
+    const bool tiled = layer.layout == Layout::tiled;
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(tiled ? "GTiff" : "MEM");
+    const CPLStringList options = tiled ? creation_options(*driver, layer.type) : CPLStringList();
+    DatasetPtr dataset(driver->Create(tiled ? path.c_str() : "", static_cast<int>(grid.cols),
+                                      static_cast<int>(grid.rows), 1, gdal_type(layer.type), options.List()));
+    if (!dataset) throw Error(fmt::format("{} cannot be created{}", path.string(), because(gdal)));
+    const CPLErr status = fill(*dataset, grid, placement, cells, layer);
+    if (tiled) {
+        dataset->FlushCache(false);
+        return status;
+    }
+    GDALDriver* cloud = GetGDALDriverManager()->GetDriverByName("COG");
+    if (cloud == nullptr) throw Error("this GDAL cannot write cloud-optimized GeoTIFFs: use GDAL 3.1 or newer");
+    const DatasetPtr copy(cloud->CreateCopy(path.c_str(), dataset.get(), true, cloud_options(*cloud, layer.type).List(),
+                                            nullptr, nullptr));
+    return copy ? status : CE_Failure;
+}
+
 void write_file(const std::filesystem::path& path, const Grid& grid, const Placement& placement,
                 std::vector<double> cells, const Layer& layer, GdalGuard& gdal) {
-    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
-    DatasetPtr dataset(driver->Create(path.c_str(), static_cast<int>(grid.cols), static_cast<int>(grid.rows), 1,
-                                      gdal_type(layer.type), creation_options(*driver, layer.type).List()));
-    if (!dataset) throw Error(fmt::format("{} cannot be created{}", path.string(), because(gdal)));
-    place(*dataset, placement);
-    GDALRasterBand& band = *dataset->GetRasterBand(1);
-    describe(band, layer);
-    const CPLErr status =
-        band.RasterIO(GF_Write, 0, 0, static_cast<int>(grid.cols), static_cast<int>(grid.rows), cells.data(),
-                      static_cast<int>(grid.cols), static_cast<int>(grid.rows), GDT_Float64, 0, 0, nullptr);
-    dataset->FlushCache(false);
-    dataset.reset();
-    if (status != CE_None || gdal.failed() || !tiles_lie_inside(path, grid)) unwritten(path, gdal);
+    const CPLErr status = write_cells(path, grid, placement, std::move(cells), layer, gdal);
+    if (status != CE_None || gdal.failed() || !tiles_lie_inside(path, grid, layer.layout)) unwritten(path, gdal);
 }
 
 }  // namespace

@@ -127,6 +127,12 @@ class Reader {
         member = *number;
     }
 
+    void read(const Field& field, const toml::node& node, bool& member) const {
+        const auto truth = node.is_boolean() ? node.value<bool>() : std::nullopt;
+        if (!truth) throw Error(fmt::format("{} must be true or false, not {}", field.key, quoted(node)));
+        member = *truth;
+    }
+
     template <class Whole>
     requires std::is_unsigned_v<Whole>
     void read(const Field& field, const toml::node& node, Whole& member) const {
@@ -221,6 +227,7 @@ std::string shown(const std::string& word) {
 std::string shown(const std::filesystem::path& path) { return shown(path.lexically_normal().string()); }
 std::string shown(const std::array<double, 4>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 std::string shown(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
+std::string shown(bool value) { return value ? "true" : "false"; }
 template <class Whole>
 requires std::is_unsigned_v<Whole> std::string shown(Whole value) { return fmt::format("{}", value); }
 template <class E>
@@ -249,7 +256,20 @@ const Words<Solver>& words(Solver) {
     return all;
 }
 const Words<Interpolation>& words(Interpolation) {
-    static const Words<Interpolation> all{{"linear", Interpolation::linear}};
+    static const Words<Interpolation> all{
+        {"gaussian", Interpolation::gaussian}, {"linear", Interpolation::linear}, {"natural", Interpolation::natural}};
+    return all;
+}
+const Words<GeotiffKind>& words(GeotiffKind) {
+    static const Words<GeotiffKind> all{{"tiled", GeotiffKind::tiled}, {"cog", GeotiffKind::cog}};
+    return all;
+}
+const Words<HeightmapFile>& words(HeightmapFile) {
+    static const Words<HeightmapFile> all{{"png", HeightmapFile::png}};
+    return all;
+}
+const Words<MeshFile>& words(MeshFile) {
+    static const Words<MeshFile> all{{"obj", MeshFile::obj}, {"ply", MeshFile::ply}};
     return all;
 }
 const Words<FitMethod>& words(FitMethod) {

@@ -10,6 +10,7 @@
 #include "study/model.hpp"
 #include "study/report_json.hpp"
 #include "study/simulation_outputs.hpp"
+#include "study/terrain_files.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/evolve/simulate.hpp"
 #include "thalweg/study/output_folder.hpp"
@@ -162,9 +163,11 @@ std::string run(const Topology& topology, const Experiment& e, Domain& domain, d
     const Finished finished = finish(topology, model, domain, e);
     const Heightfield h = heightfield(topology, domain, finished, e);
     const PositionOf position = map_positions(domain, h.elevation);
-    write_results(h, finished, outcome, position, folder);
+    write_results(h, finished, outcome, position, e, folder);
+    const Json terrain_files = write_terrain_files(topology, domain, h, finished, e, folder);
     write_text(folder / "experiment.toml", to_toml(e));
     Json summary = summary_json(domain, outcome, finished, position);
+    summary.update(terrain_files);
     if (!outcome.converged && e.time.convergence > 0) {
         messages.warning(fmt::format("not steady after {} steps: a fit of k and m to this landscape assumes that it is",
                                      outcome.steps));
@@ -185,6 +188,7 @@ template <class MakeDomain>
 std::string simulate_on(const Experiment& e, const std::filesystem::path& folder, const Messages& messages,
                         MakeDomain make) {
     model_of(e);
+    check_terrain_files(e);
     messages.progress("making the mesh");
     const Stopwatch meshing;
     Domain domain = make();

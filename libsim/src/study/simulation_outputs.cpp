@@ -67,6 +67,33 @@ std::vector<T> pick(const std::vector<T>& values, const std::vector<Index>& node
     return picked;
 }
 
+/// Mean distance that square cells of the nodes' mean area would have.
+double mean_spacing(const Mesh& mesh) {
+    double area = 0;
+    for (const double cell : mesh.cell_area) area += cell;
+    return std::sqrt(area / mesh.size());
+}
+
+void interpolate(const Mesh& mesh, const std::vector<double>& values, const Experiment& e, Raster& raster) {
+    switch (e.output.interpolation) {
+        case Interpolation::linear:
+            return surface::interpolate_linear(mesh, values, raster);
+        case Interpolation::natural:
+            return surface::interpolate_natural(mesh, values, raster);
+        case Interpolation::gaussian:
+            break;
+    }
+    const double sigma_m = e.output.sigma_cells ? *e.output.sigma_cells * raster.grid.east_west[0] : mean_spacing(mesh);
+    surface::interpolate_gaussian(mesh, values, sigma_m, raster);
+}
+
+io::Layer layer(const Experiment& e, std::string description) {
+    const bool cloud = e.output.geotiff == GeotiffKind::cog;
+    return {.nodata = {},
+            .description = std::move(description),
+            .layout = cloud ? io::Layout::cloud_optimized : io::Layout::tiled};
+}
+
 }  // namespace
 
 Heightfield heightfield(const Grid& grid, const Domain& domain, const Finished& f, const Experiment& e) {
@@ -84,7 +111,7 @@ Heightfield heightfield(const Mesh& mesh, const Domain& domain, const Finished& 
     constexpr Index usual_resolution = 512;
     Heightfield h;
     h.elevation = surface::covering_raster(mesh, e.output.resolution.value_or(usual_resolution));
-    surface::interpolate_linear(mesh, f.terrain.elevation_m, h.elevation);
+    interpolate(mesh, f.terrain.elevation_m, e, h.elevation);
     const std::vector<Index> node = surface::nearest_node(mesh, h.elevation);
     h.drainage_area_m2 = pick(f.terrain.drainage_area_m2, node, nan);
     h.basin_of = pick(f.statistics.basin_of, node, none);
@@ -105,12 +132,11 @@ PositionOf map_positions(const Domain& domain, const Raster& elevation) {
 }
 
 void write_results(const Heightfield& h, const Finished& f, const Outcome& o, const PositionOf& position,
-                   const std::filesystem::path& folder) {
+                   const Experiment& experiment, const std::filesystem::path& folder) {
     const Raster& e = h.elevation;
-    io::write_raster(folder / "elevation.tif", e.grid, e.placement, e.values,
-                     {.nodata = {}, .description = "elevation (m)"});
+    io::write_raster(folder / "elevation.tif", e.grid, e.placement, e.values, layer(experiment, "elevation (m)"));
     io::write_raster(folder / "drainage_area.tif", e.grid, e.placement, h.drainage_area_m2,
-                     {.nodata = {}, .description = "drainage area of the nearest node (m2)"});
+                     layer(experiment, "drainage area of the nearest node (m2)"));
     const Statistics& s = f.statistics;
     auto outlines = io::cell_outlines(e, h.basin_of, static_cast<Index>(s.basins.size()));
     io::write_geopackage(folder / "network.gpkg",

@@ -51,7 +51,7 @@ Heightfield heightfield(const Mesh&, const Domain&, const Finished&, const Exper
 PositionOf map_positions(const Domain&, const Raster& elevation);
 
 /// GeoTIFFs, GeoPackage and CSVs of a finished simulation.
-void write_results(const Heightfield&, const Finished&, const Outcome&, const PositionOf&,
+void write_results(const Heightfield&, const Finished&, const Outcome&, const PositionOf&, const Experiment&,
                    const std::filesystem::path& folder);
 
 }  // namespace thalweg::study

@@ -1,48 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/surface/heightfield.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include "surface/coverage.hpp"
+#include "surface/nodes.hpp"
 #include "thalweg/core/error.hpp"
 
 namespace thalweg::surface {
 namespace {
-
-Point node_at(const Mesh& mesh, Index node) { return {mesh.x[node], mesh.y[node]}; }
-
-double distance2(const Point& a, const Point& b) { return (a.x - b.x) * (a.x - b.x) + (a.y - b.y) * (a.y - b.y); }
-
-Triangulation plane_of(const Mesh& mesh) { return {mesh.x, mesh.y, mesh.triangles}; }
 
 double interpolate(const std::array<double, 3>& v, const std::array<double, 3>& at) {
     const double sum = at[0] + at[1] + at[2];
     const double value = at[0] / sum * v[0] + at[1] / sum * v[1] + at[2] / sum * v[2];
     if (std::isnan(value)) return value;
     return std::clamp(value, std::min({v[0], v[1], v[2]}), std::max({v[0], v[1], v[2]}));  // against rounding
-}
-
-/// Down the distances over the neighbours. The straight line from a corner of the place's own triangle leaves a node's
-/// cell only to a neighbour nearer to the place, so the walk ends at the nearest node, after a step or two.
-Index walk_to_nearest(const Mesh& mesh, const std::array<Index, 3>& t, const Point& p) {
-    const auto nearer = [&](Index a, Index b) {
-        const double to_a = distance2(node_at(mesh, a), p);
-        const double to_b = distance2(node_at(mesh, b), p);
-        return to_a < to_b || (to_a == to_b && a < b);
-    };
-    Index nearest = *std::min_element(t.begin(), t.end(), nearer);
-    for (Index here = none; here != nearest;) {
-        here = nearest;
-        mesh.neighbors(here, [&](Index other, double, Slot) {
-            if (nearer(other, nearest)) nearest = other;
-        });
-    }
-    return nearest;
 }
 
 }  // namespace
@@ -69,9 +44,7 @@ Raster covering_raster(const Mesh& mesh, Index resolution) {
 }
 
 void interpolate_linear(const Mesh& mesh, std::span<const double> node_values, Raster& raster) {
-    if (node_values.size() != mesh.size()) {
-        throw Error(fmt::format("{} values for the {} nodes of the mesh", node_values.size(), mesh.size()));
-    }
+    check_one_value_per_node(mesh, node_values);
     raster.values.assign(raster.grid.size(), std::numeric_limits<double>::quiet_NaN());
     cover(plane_of(mesh), raster, [&](const Claim& claim) {
         const std::array<Index, 3>& t = mesh.triangles[claim.triangle];

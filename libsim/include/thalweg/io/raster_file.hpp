@@ -21,27 +21,33 @@ struct ReadOptions {
 struct ReadResult {
     Raster raster;
     std::vector<std::string> warnings;
-    std::string crs_name;            ///< "EPSG:32611" where known, else the name in the WKT, else ""
-    double vertical_unit_m = 1;      ///< heights were multiplied by this
+    std::string crs_name;        ///< "EPSG:32611" where known, else the name in the WKT, else ""
+    double vertical_unit_m = 1;  ///< heights were multiplied by this
 };
 
 /// Elevations from the first band of any raster that GDAL reads, in metres, with the grid's measures: metres on the
 /// projected plane (from the CRS's unit), or ellipsoidal for degrees. No data (tag, mask band, NaN, infinity) becomes
 /// NaN; scale and offset are applied; south-up rasters are turned over; a zip that holds one raster is opened.
-/// Throws Error, one sentence, for what cannot be measured: no raster, no geotransform, rotated, all no data, one row or
-/// column, too many cells, a CRS that is neither geographic nor projected, truncated data.
+/// Throws Error, one sentence, for what cannot be measured: no raster, no geotransform, rotated, all no data, one row
+/// or column, too many cells, a CRS that is neither geographic nor projected, truncated data.
 ReadResult read_raster(const std::filesystem::path&, const ReadOptions& = {});
 
 enum class CellType { float64, uint8, int32 };
+
+enum class Layout {
+    tiled,           ///< tiles of 256² cells
+    cloud_optimized  ///< tiles of 512², overviews, headers first (GDAL's COG driver): read in parts over a network
+};
 
 /// What a written raster holds.
 struct Layer {
     CellType type = CellType::float64;
     std::optional<double> nodata = {};  ///< tag to write; NaN in memory becomes this
     std::string description = {};       ///< of the band, with its unit
+    Layout layout = Layout::tiled;
 };
 
-/// Writes a tiled GeoTIFF (ZSTD with predictor where GDAL has it, else DEFLATE), bytes a function of the values alone.
+/// Writes a GeoTIFF (ZSTD with predictor where GDAL has it, else DEFLATE), bytes a function of the values alone.
 /// Throws Error when it cannot be written whole (permissions, full disk).
 void write_raster(const std::filesystem::path&, const Grid&, const Placement&, std::span<const double> values,
                   const Layer&);

@@ -22,7 +22,10 @@ enum class OutletRule { all, dem };
 enum class NoiseKind { perlin, uniform };
 enum class InitialSurface { noise, dem };
 enum class Solver { implicit, steady };
-enum class Interpolation { linear };
+enum class Interpolation { gaussian, linear, natural };
+enum class GeotiffKind { tiled, cog };
+enum class HeightmapFile { png };
+enum class MeshFile { obj, ply };
 enum class FitMethod { slope_area };
 
 /// Everything an experiment file can say, with the defaults for what it does not say. Each member is described once, in
@@ -64,6 +67,13 @@ struct Experiment {
     struct {
         std::optional<Index> resolution;
         Interpolation interpolation = Interpolation::linear;
+        std::optional<double> sigma_cells;
+        GeotiffKind geotiff = GeotiffKind::tiled;
+        std::optional<HeightmapFile> heightmap;
+        std::optional<MeshFile> mesh_file;
+        std::optional<MeshFile> heightfield_mesh_file;
+        bool solid = false;
+        std::optional<double> base_depth_m;
     } output;
     struct {
         std::optional<std::filesystem::path> dem;
@@ -99,6 +109,9 @@ const Words<NoiseKind>& words(NoiseKind);
 const Words<InitialSurface>& words(InitialSurface);
 const Words<Solver>& words(Solver);
 const Words<Interpolation>& words(Interpolation);
+const Words<GeotiffKind>& words(GeotiffKind);
+const Words<HeightmapFile>& words(HeightmapFile);
+const Words<MeshFile>& words(MeshFile);
 const Words<FitMethod>& words(FitMethod);
 const Words<evolve::Pattern>& words(evolve::Pattern);
 const Words<terrain::Receiver>& words(terrain::Receiver);
@@ -144,7 +157,25 @@ void describe(AnyExperiment& e, Visit visit) {
           e.time.convergence);
     visit(Field{"output.resolution", "", "cells along the longer side of a TIN's heightfield; default 512", 2, 100000},
           e.output.resolution);
-    visit(Field{"output.interpolation", "", "how a TIN becomes a heightfield"}, e.output.interpolation);
+    visit(Field{"output.interpolation", "",
+                "how a TIN becomes a heightfield: smoothed, linear in its triangles, or by natural neighbours"},
+          e.output.interpolation);
+    visit(Field{"output.sigma_cells", "",
+                "standard deviation of the Gaussian weights, in cells; default: the nodes' mean distance", 0, 10000,
+                true},
+          e.output.sigma_cells);
+    visit(Field{"output.geotiff", "", "layout of the GeoTIFFs: tiles, or cloud-optimized with overviews"},
+          e.output.geotiff);
+    visit(Field{"output.heightmap", "", "also write the heightfield with 16 bits, as terrain renderers import it"},
+          e.output.heightmap);
+    visit(Field{"output.mesh_file", "", "also write the simulation's own nodes and triangles"}, e.output.mesh_file);
+    visit(Field{"output.heightfield_mesh_file", "", "also write the heightfield as triangles"},
+          e.output.heightfield_mesh_file);
+    visit(Field{"output.solid", "", "close those meshes with vertical sides and a flat base"}, e.output.solid);
+    visit(
+        Field{"output.base_depth_m", "m",
+              "depth of that base below the lowest point; default: a twentieth of the longer side", 0, infinity, true},
+        e.output.base_depth_m);
     visit(Field{"study.dem", "", "the DEM to be explained; a study needs it or a source"}, e.study.dem);
     visit(Field{"study.source", "", "where to fetch the DEM from, instead of study.dem (thalweg fetch --help)"},
           e.study.source);

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/terrain_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "study/local_metres.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/io/heightmap.hpp"
+#include "thalweg/mesh/mesh_file.hpp"
+#include "thalweg/surface/solid.hpp"
+
+namespace thalweg::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+mesh::MeshFormat format_of(MeshFile file) {
+    return file == MeshFile::obj ? mesh::MeshFormat::obj : mesh::MeshFormat::ply;
+}
+
+double base_of(const TriangleSurface& surface, const Experiment& e, double extent_m) {
+    return *std::min_element(surface.z.begin(), surface.z.end()) - e.output.base_depth_m.value_or(extent_m / 20);
+}
+
+Json write_surface(const fs::path& folder, const char* name, MeshFile file, TriangleSurface surface,
+                   const LocalMetres& local, const Experiment& e, double extent_m) {
+    const mesh::MeshFormat format = format_of(file);
+    const std::string filename = fmt::format("{}.{}", name, mesh::to_string(format));
+    if (surface.triangles.empty()) throw Error(fmt::format("{} would hold no triangle: use more nodes", filename));
+    Json described{{"file", filename}};
+    if (e.output.solid) {
+        const double base = base_of(surface, e, extent_m);
+        surface = surface::closed_solid(surface, base);
+        described["base_m"] = base;
+        described["volume_m3"] = surface::enclosed_volume(surface);
+    }
+    described["vertices"] = surface.size();
+    described["triangles"] = surface.triangles.size();
+    described["closed"] = e.output.solid;
+    described["origin_x"] = local.origin.x;
+    described["origin_y"] = local.origin.y;
+    mesh::write_mesh(
+        folder / filename, surface, format,
+        fmt::format("metres, z up; x and y from the map position ({}, {})", local.origin.x, local.origin.y));
+    return described;
+}
+
+/// `own` makes the surface of the simulation's own nodes.
+template <class Own>
+Json write_files(const Heightfield& h, const Domain& domain, const Experiment& e, const fs::path& folder, Own own) {
+    Json keys = Json::object();
+    if (e.output.heightmap) {
+        const io::HeightmapScale scale = io::write_heightmap(folder / "elevation.png", h.elevation);
+        keys["heightmap"] = {{"file", "elevation.png"},
+                             {"metres_per_count", scale.metres_per_count},
+                             {"offset_m", scale.offset_m},
+                             {"nodata_count", 0}};
+    }
+    if (!e.output.mesh_file && !e.output.heightfield_mesh_file) return keys;
+    const LocalMetres local = local_metres(h.elevation);
+    keys["meshes"] = Json::array();
+    if (e.output.mesh_file) {
+        keys["meshes"].push_back(
+            write_surface(folder, "mesh", *e.output.mesh_file, own(local), local, e, domain.extent_m));
+    }
+    if (e.output.heightfield_mesh_file) {
+        TriangleSurface cells = surface::triangle_surface(h.elevation.grid, local.centers, h.elevation.values);
+        keys["meshes"].push_back(write_surface(folder, "heightfield", *e.output.heightfield_mesh_file, std::move(cells),
+                                               local, e, domain.extent_m));
+    }
+    return keys;
+}
+
+}  // namespace
+
+void check_terrain_files(const Experiment& e) {
+    if (e.output.sigma_cells && e.output.interpolation != Interpolation::gaussian) {
+        throw Error("output.sigma_cells belongs to output.interpolation = \"gaussian\": set that, or leave it out");
+    }
+    if (e.output.solid && !e.output.mesh_file && !e.output.heightfield_mesh_file) {
+        throw Error("output.solid closes meshes: ask for output.mesh_file or output.heightfield_mesh_file");
+    }
+    if (e.output.base_depth_m && !e.output.solid) {
+        throw Error("output.base_depth_m is the depth of a solid's base: set output.solid = true, or leave it out");
+    }
+}
+
+Json write_terrain_files(const Grid& grid, const Domain& domain, const Heightfield& h, const Finished& f,
+                         const Experiment& e, const fs::path& folder) {
+    return write_files(h, domain, e, folder, [&](const LocalMetres& local) {
+        return surface::triangle_surface(grid, local.centers, f.terrain.elevation_m);
+    });
+}
+
+Json write_terrain_files(const Mesh& mesh, const Domain& domain, const Heightfield& h, const Finished& f,
+                         const Experiment& e, const fs::path& folder) {
+    return write_files(h, domain, e, folder, [&](const LocalMetres& local) {
+        TriangleSurface surface = surface::triangle_surface(mesh, f.terrain.elevation_m);
+        for (double& x : surface.x) x -= local.origin.x * domain.unit_m;
+        for (double& y : surface.y) y -= local.origin.y * domain.unit_m;
+        return surface;
+    });
+}
+
+}  // namespace thalweg::study
