@@ -124,6 +124,7 @@ StepSums erode_divided(const Edges& edges, const Drainage& drainage, const River
         elevation[node] = step.elevation_m;
         sums.add(edges.area(node), uplift_m, step.elevation_m - before, step);
     }
+    sums.carry();
     landscape.time_yr += dt_yr;
     return sums;
 }

@@ -5,6 +5,8 @@
 #include <span>
 
 #include "evolve/edges.hpp"
+#include "terrain/layered_order.hpp"
+#include "thalweg/core/parallel.hpp"
 #include "thalweg/evolve/river.hpp"
 #include "thalweg/terrain/graph.hpp"
 #include "thalweg/terrain/lakes.hpp"
@@ -22,30 +24,25 @@ void keep_frozen(const Edges& edges, const std::vector<double>& elevation_m, con
     }
 }
 
+/// Memory that draining needs; kept from step to step it is allocated once.
+struct DrainBuffers {
+    terrain::OrderBuffers order;
+};
+
+/// Rain on every node's own cell.
+template <class Edges>
+void collect_rain(const Edges& edges, const std::vector<double>& rainfall, std::vector<double>& area_m2) {
+    area_m2.resize(rainfall.size());
+    parallel_for(0, static_cast<Index>(rainfall.size()), [&](Index first, Index last) {
+        for (Index node = first; node < last; ++node) area_m2[node] = edges.area(node) * rainfall[node];
+    });
+}
+
 /// Sweeps jump about in memory, but the list says where they will be: this many nodes ahead are asked for early.
 inline constexpr std::size_t ahead = 24;
 
-/// Rainfall-weighted area of every node and all upstream of it, donors added in the order of the list. The buffer is
-/// reused. Nodes without data keep 0.
-template <class Edges>
-void accumulate_rain(const Edges& edges, const std::vector<double>& rainfall, const FlowDirections& directions,
-                     const std::vector<Index>& order, std::vector<double>& area_m2) {
-    area_m2.assign(directions.size(), 0.0);
-    for (std::size_t at = order.size(); at-- > 0;) {
-        if (at >= ahead) {
-            const Index later = order[at - ahead];
-            __builtin_prefetch(&area_m2[later]);
-            __builtin_prefetch(&rainfall[later]);
-            __builtin_prefetch(&directions[later]);
-        }
-        const Index node = order[at];
-        const double area = area_m2[node] + edges.area(node) * rainfall[node];
-        area_m2[node] = area;
-        if (directions[node] != no_flow) area_m2[edges.neighbor(node, directions[node])] += area;
-    }
-}
-
-/// The same along divided flow.
+/// Rainfall-weighted area of every node and all upstream of it along divided flow, donors added in the order of the
+/// list. Nodes without data keep 0.
 template <class Edges>
 void accumulate_rain(const Edges& edges, const std::vector<double>& rainfall, const terrain::MultipleFlow& flow,
                      std::vector<double>& area_m2) {
@@ -69,12 +66,12 @@ void accumulate_rain(const Edges& edges, const std::vector<double>& rainfall, co
     }
 }
 
-/// Drainage of a landscape into buffers that live as long as the simulation.
+/// Drainage of a landscape into buffers that live as long as the simulation. Nodes without data keep area 0.
 template <Topology T>
 void drain_into(const T& topology, const Landscape& landscape, const Setting& setting, const River& river,
-                const FlowDirections& frozen, Drainage& drainage) {
+                const FlowDirections& frozen, Drainage& drainage, DrainBuffers& buffers) {
     const auto& elevation_m = landscape.elevation_m;
-    drainage.directions = terrain::route(topology, elevation_m, setting.boundary, river.receiver);
+    terrain::route(topology, elevation_m, setting.boundary, river.receiver, drainage.directions);
     if (!frozen.empty()) {
         with_edges(topology, [&](const auto& edges) { keep_frozen(edges, elevation_m, frozen, drainage.directions); });
     }
@@ -83,15 +80,20 @@ void drain_into(const T& topology, const Landscape& landscape, const Setting& se
         const terrain::Division division{.exponent = river.flow_exponent};
         terrain::multiple_flow(topology, elevation_m, drainage.directions, division, drainage.flow);
         drainage.order = drainage.flow.order;
+        drainage.layers = {};
         with_edges(topology, [&](const auto& edges) {
             accumulate_rain(edges, setting.rainfall, drainage.flow, drainage.area_m2);
         });
         return;
     }
-    drainage.order = terrain::downstream_first_order(topology, elevation_m, drainage.directions);
-    with_edges(topology, [&](const auto& edges) {
-        accumulate_rain(edges, setting.rainfall, drainage.directions, drainage.order, drainage.area_m2);
-    });
+    with_edges(topology, [&](const auto& edges) { collect_rain(edges, setting.rainfall, drainage.area_m2); });
+    double* const area_m2 = drainage.area_m2.data();
+    terrain::order_by_layers(topology, elevation_m, drainage.directions, buffers.order, drainage.order, drainage.layers,
+                             [=](Index donor, Index taker) { area_m2[taker] += area_m2[donor]; });
+    if (drainage.order.size() == elevation_m.size()) return;
+    for (Index node = 0; node < elevation_m.size(); ++node) {
+        if (std::isnan(elevation_m[node])) area_m2[node] = 0;
+    }
 }
 
 }  // namespace thalweg::evolve

@@ -15,7 +15,8 @@ Drainage drained(const T& topology, const Landscape& landscape, const Setting& s
     check_setting(topology.size(), landscape, setting);
     check_frozen(topology.size(), frozen);
     Drainage drainage;
-    drain_into(topology, landscape, setting, river, frozen, drainage);
+    DrainBuffers buffers;
+    drain_into(topology, landscape, setting, river, frozen, drainage, buffers);
     return drainage;
 }
 

@@ -47,13 +47,15 @@ struct Run {
     const Setting& setting;
     const TimeOptions& options;
     SlopeSolver solve;
-    Drainage drainage;
+    Drainage drainage = {};
+    DrainBuffers buffers = {};
 };
 
 template <Topology T>
 bool drains_as_before(const Run<T>& run, const SimulationState& state) {
     Drainage now;
-    drain_into(run.topology, state.landscape, run.setting, run.model.river, state.exchange.frozen, now);
+    DrainBuffers buffers;
+    drain_into(run.topology, state.landscape, run.setting, run.model.river, state.exchange.frozen, now, buffers);
     return now.directions == run.drainage.directions;
 }
 
@@ -82,7 +84,8 @@ template <Topology T>
 StepReport step(Run<T>& run, SimulationState& state) {
     Landscape& landscape = state.landscape;
     const River& river = run.model.river;
-    drain_into(run.topology, landscape, run.setting, river, state.exchange.frozen, run.drainage);
+    drain_into(run.topology, landscape, run.setting, river, state.exchange.frozen, run.drainage,
+               run.buffers);
     const StepSums sums = with_edges(run.topology, [&](const auto& edges) {
         return dig(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr, landscape);
     });
@@ -146,7 +149,7 @@ template <Topology T>
 SimulationResult continued(const T& topology, const Model& model, const Setting& setting, const TimeOptions& options,
                            SimulationState& state, const Observer& observer) {
     check(topology, model, setting, options, state.landscape);
-    Run<T> run{topology, model, setting, options, SlopeSolver(model.river.n), {}};
+    Run<T> run{topology, model, setting, options, SlopeSolver(model.river.n)};
     while (state.steps < options.max_steps && !state.converged) {
         const auto start = Clock::now();
         step(run, state);

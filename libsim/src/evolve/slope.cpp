@@ -59,7 +59,8 @@ double log_root(double log_ratio, double n) {
 
 }  // namespace
 
-SlopeSolver::SlopeSolver(double n) : n_(n), second_(n * (n - 1) / 2), third_(n * (n - 1) * (n - 2) / 6) {
+SlopeSolver::SlopeSolver(double n)
+    : n_(n), inverse_n_(1 / n), second_(n * (n - 1) / 2), third_(n * (n - 1) * (n - 2) / 6) {
     if (n == 1) return;
     const auto last = static_cast<int>(std::ceil(octaves * (1 + n) * entries_per_octave));
     for (int i = 0; i <= last; ++i) {

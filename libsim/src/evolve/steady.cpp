@@ -84,9 +84,10 @@ SteadyResult solved(const T& topology, const River& river, const Setting& settin
     const SteadySlope slope(river, setting);
     ExchangeWatch exchange = exchange_watch(topology.size(), patience);
     Drainage drainage;
+    DrainBuffers buffers;
     SteadyResult result{.sweeps = 0, .converged = false, .frozen_receivers = 0, .frozen = {}};
     while (result.sweeps < max_sweeps) {
-        drain_into(topology, landscape, setting, river, exchange.frozen, drainage);
+        drain_into(topology, landscape, setting, river, exchange.frozen, drainage, buffers);
         const Index changes = observe(exchange, drainage.directions);
         result.converged = result.sweeps > 0 && changes == 0;
         if (result.converged) break;

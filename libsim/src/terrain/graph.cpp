@@ -3,52 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "terrain/check_sizes.hpp"
 #include "terrain/downhill.hpp"
 #include "terrain/row_lengths.hpp"
+#include "terrain/layered_order.hpp"
 #include "thalweg/core/parallel.hpp"
 
 namespace thalweg::terrain {
 namespace {
-
-constexpr Slot placed = 255;
-
-template <Topology T>
-std::vector<Slot> count_donors(const T& topology, const FlowDirections& directions) {
-    const auto neighbor = downhill(topology);
-    std::vector<Slot> donors(topology.size(), 0);
-    for (Index node = 0; node < topology.size(); ++node) {
-        if (directions[node] != no_flow) ++donors[neighbor(node, directions[node])];
-    }
-    return donors;
-}
-
-/// From every node without donors down as far as no other branch is awaited; the last branch to arrive walks on. That
-/// writes donors before receivers, so it is filled in from the end.
-template <Topology T>
-std::vector<Index> order_nodes(const T& topology, std::span<const double> elevation_m,
-                               const FlowDirections& directions) {
-    check_sizes(topology.size(), elevation_m.size(), directions.size());
-    const auto neighbor = downhill(topology);
-    std::vector<Slot> awaited = count_donors(topology, directions);
-    std::vector<Index> order(topology.size());
-    Index free = topology.size();
-    for (Index leaf = 0; leaf < topology.size(); ++leaf) {
-        if (awaited[leaf] != 0 || std::isnan(elevation_m[leaf])) continue;
-        Index node = leaf;
-        while (true) {
-            order[--free] = node;
-            awaited[node] = placed;
-            if (directions[node] == no_flow) break;
-            node = neighbor(node, directions[node]);
-            if (--awaited[node] != 0) break;
-        }
-    }
-    order.erase(order.begin(), order.begin() + free);
-    return order;
-}
 
 void write_lengths(const Mesh& mesh, const FlowDirections& directions, std::vector<double>& length) {
     parallel_for(0, mesh.size(), [&](Index first, Index last) {
@@ -73,10 +36,24 @@ void write_lengths(const Grid& grid, const FlowDirections& directions, std::vect
 }
 
 template <Topology T>
+std::vector<Index> order_nodes(const T& topology, std::span<const double> elevation_m,
+                               const FlowDirections& directions) {
+    check_sizes(topology.size(), elevation_m.size(), directions.size());
+    OrderBuffers buffers;
+    FlowLayers layers;
+    std::vector<Index> order;
+    order_by_layers(topology, elevation_m, directions, buffers, order, layers, [](Index, Index) {});
+    return order;
+}
+
+template <Topology T>
 FlowGraph make_graph(const T& topology, std::span<const double> elevation_m, const FlowDirections& directions) {
+    check_sizes(topology.size(), elevation_m.size(), directions.size());
     FlowGraph graph{.receiver = std::vector<Index>(topology.size(), none),
                     .length = std::vector<double>(topology.size(), 0.0),
-                    .order = order_nodes(topology, elevation_m, directions)};
+                    .order = {}};
+    OrderBuffers buffers;
+    order_by_layers(topology, elevation_m, directions, buffers, graph.order, graph.layers, [](Index, Index) {});
     const auto neighbor = downhill(topology);
     parallel_for(0, topology.size(), [&](Index first, Index last) {
         for (Index node = first; node < last; ++node) {

@@ -74,15 +74,15 @@ void route_row(const Grid& grid, std::span<const double> elevation_m, std::span<
 
 }  // namespace
 
-FlowDirections route(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary,
-                     Receiver receiver) {
+void route(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary, Receiver receiver,
+           FlowDirections& directions) {
     check_sizes(grid.size(), elevation_m.size(), boundary.size());
-    FlowDirections directions(grid.size());
+    directions.resize(grid.size());
     if (receiver == Receiver::lowest) {
         parallel_for(0, grid.size(), [&](Index first, Index last) {
             route_nodes(grid, elevation_m, boundary, receiver, first, last, directions);
         });
-        return directions;
+        return;
     }
     const Index rows_per_piece = std::max<Index>(1, 16384 / grid.cols);
     parallel_for(
@@ -91,16 +91,28 @@ FlowDirections route(const Grid& grid, std::span<const double> elevation_m, std:
             for (Index row = first; row < last; ++row) route_row(grid, elevation_m, boundary, row, directions);
         },
         rows_per_piece);
+}
+
+void route(const Mesh& mesh, std::span<const double> elevation_m, std::span<const Boundary> boundary, Receiver receiver,
+           FlowDirections& directions) {
+    check_sizes(mesh.size(), elevation_m.size(), boundary.size());
+    directions.resize(mesh.size());
+    parallel_for(0, mesh.size(), [&](Index first, Index last) {
+        route_nodes(mesh, elevation_m, boundary, receiver, first, last, directions);
+    });
+}
+
+FlowDirections route(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary,
+                     Receiver receiver) {
+    FlowDirections directions;
+    route(grid, elevation_m, boundary, receiver, directions);
     return directions;
 }
 
 FlowDirections route(const Mesh& mesh, std::span<const double> elevation_m, std::span<const Boundary> boundary,
                      Receiver receiver) {
-    check_sizes(mesh.size(), elevation_m.size(), boundary.size());
-    FlowDirections directions(mesh.size());
-    parallel_for(0, mesh.size(), [&](Index first, Index last) {
-        route_nodes(mesh, elevation_m, boundary, receiver, first, last, directions);
-    });
+    FlowDirections directions;
+    route(mesh, elevation_m, boundary, receiver, directions);
     return directions;
 }
 

@@ -8,6 +8,7 @@
 #include "thalweg/core/grid.hpp"
 #include "thalweg/core/mesh.hpp"
 #include "thalweg/evolve/landscape.hpp"
+#include "thalweg/terrain/graph.hpp"
 #include "thalweg/terrain/multiple_flow.hpp"
 #include "thalweg/terrain/route.hpp"
 
@@ -48,6 +49,7 @@ struct MassBalance {
 struct Drainage {
     FlowDirections directions;
     std::vector<Index> order;     ///< receivers before donors
+    terrain::FlowLayers layers;   ///< of the order
     std::vector<double> area_m2;  ///< effective drainage area: rainfall-weighted
     Index lakes = 0;
     terrain::MultipleFlow flow = {};  ///< where flow divides; else empty

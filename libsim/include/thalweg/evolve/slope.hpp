@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
+
+#include "thalweg/core/power.hpp"
 
 namespace thalweg::evolve {
 
@@ -39,6 +40,11 @@ class SlopeSolver {
         return solve_power(drop, length, c);
     }
 
+    /// The same for `lanes` nodes at a time, to the same bits; returns the largest number of iterations. Lanes without
+    /// drop are given slope 0 and incision 0. A loop without branches, so that it vectorises.
+    template <int lanes>
+    int solve(const double* drop, const double* length, const double* c, double* slope, double* incision_m) const;
+
   private:
     /// log2 s and its derivative at one entry of the table.
     struct Entry {
@@ -57,7 +63,15 @@ class SlopeSolver {
     double start(double drop, double length, double c) const;
     double table_value(double log_ratio) const;
 
+    /// What the correction of the third order makes of a slope.
+    struct Corrected {
+        double slope, incision_m;
+        double newton_step;  ///< relative; NaN where numbers leave their range
+    };
+    Corrected correct(double slope, double drop, double length, double c) const;
+
     double n_;
+    double inverse_n_;
     double second_;  ///< n(n − 1)/2
     double third_;   ///< n(n − 1)(n − 2)/6
     std::vector<Entry> table_;
@@ -67,14 +81,16 @@ namespace detail {
 
 /// log2 to 2e-6, for positive normal numbers; any other gives some finite number.
 inline double quick_log2(double x) {
-    constexpr std::int64_t root_of_half = 0x3fe6a09e667f3bcd;
-    const auto bits = std::bit_cast<std::int64_t>(x);
-    const std::int64_t exponent = (bits - root_of_half) >> 52;
-    const double mantissa = std::bit_cast<double>(bits - (exponent << 52));  // in [√½, √2)
+    constexpr std::uint64_t root_of_half = 0x3fe6a09e667f3bcd;
+    constexpr std::uint64_t bias = std::uint64_t{1024} << 52;
+    constexpr std::uint64_t two_to_52 = 0x4330000000000000;
+    const auto bits = std::bit_cast<std::uint64_t>(x);
+    const std::uint64_t biased = (bits - root_of_half + bias) >> 52;
+    const double exponent = std::bit_cast<double>(biased | two_to_52) - (4503599627370496.0 + 1024);
+    const double mantissa = std::bit_cast<double>(bits - (biased << 52) + bias);  // in [√½, √2)
     const double t = (mantissa - 1) / (mantissa + 1);
     const double t2 = t * t;
-    return static_cast<double>(exponent) +
-           t * (2.8853900817779268 + t2 * (0.9617966939259756 + t2 * 0.5770780163555854));
+    return exponent + t * (2.8853900817779268 + t2 * (0.9617966939259756 + t2 * 0.5770780163555854));
 }
 
 /// 2^y to 3e-6, for |y| < 1000; for any other some number.
@@ -90,17 +106,23 @@ inline double quick_exp2(double y) {
 
 }  // namespace detail
 
-/// log2 s by Hermite's cubic between entries; outside the table the one term that counts.
+/// log2 s by Hermite's cubic between entries; beyond the end, where one term is all, by the chord's slope −1/n; below
+/// the beginning the first entry. Selects of what is at hand and no branches.
 inline double SlopeSolver::table_value(double log_ratio) const {
+    const double last = static_cast<double>(table_.size() - 1);
     const double position = (log_ratio + octaves) * entries_per_octave;
-    if (!(position > 0)) return 0;
-    if (position >= static_cast<double>(table_.size() - 1)) return -log_ratio / n_;
-    const auto at = static_cast<std::uint32_t>(position);
-    const double t = position - at;
-    const Entry& a = table_[at];
-    const Entry& b = table_[at + 1];
-    const double chord = b.value - a.value;
-    return a.value + t * (a.rise + t * ((3 * chord - 2 * a.rise - b.rise) + t * (a.rise + b.rise - 2 * chord)));
+    const double from_begin = position > 0 ? position : 0;
+    const double nearly_last = last * (1 - 1e-12);
+    const double inside = from_begin < nearly_last ? from_begin : nearly_last;
+    const double beyond = position - nearly_last > 0 ? position - nearly_last : 0;
+    const auto at = static_cast<std::int32_t>(inside);
+    const double t = inside - at;
+    const Entry* const entry = table_.data();
+    const double a = entry[at].value, a_rise = entry[at].rise;
+    const double b = entry[at + 1].value, b_rise = entry[at + 1].rise;
+    const double chord = b - a;
+    return a + t * (a_rise + t * ((3 * chord - 2 * a_rise - b_rise) + t * (a_rise + b_rise - 2 * chord))) -
+           beyond * inverse_n_ / entries_per_octave;
 }
 
 inline double SlopeSolver::start(double drop, double length, double c) const {
@@ -110,24 +132,56 @@ inline double SlopeSolver::start(double drop, double length, double c) const {
     return detail::quick_exp2(log_gentle + table_value(log_ratio));
 }
 
+inline SlopeSolver::Corrected SlopeSolver::correct(double slope, double drop, double length, double c) const {
+    const double power = normal_power(slope, n_);  // n − 1 as exponent would not be exact
+    const double along = length * slope;
+    const double incision = c * power;
+    // along·(1 − d) + incision·(1 − d)^n = drop, solved for d as a series in Newton's step e.
+    const double inverse = 1 / (along + n_ * incision);
+    const double e = (along + incision - drop) * inverse;
+    const double a2 = second_ * incision * inverse;
+    const double a3 = third_ * incision * inverse;
+    const double d = e * (1 + e * (a2 + e * (2 * a2 * a2 - a3)));
+    return {slope - slope * d, incision * (1 - d * (n_ - d * (second_ - d * third_))), e};
+}
+
 inline SlopeAndIncision SlopeSolver::solve_power(double drop, double length, double c) const {
     double slope = start(drop, length, c);
     for (int step = 1; step <= most_steps; ++step) {
-        const double power = std::pow(slope, n_);  // n − 1 as exponent would not be exact
-        if (!(power >= std::numeric_limits<double>::min())) break;
-        const double along = length * slope;
-        const double incision = c * power;
-        // along·(1 − d) + incision·(1 − d)^n = drop, solved for d as a series in Newton's step e.
-        const double inverse = 1 / (along + n_ * incision);
-        const double e = (along + incision - drop) * inverse;
-        if (!(std::abs(e) < largest_step)) break;
-        const double a2 = second_ * incision * inverse;
-        const double a3 = third_ * incision * inverse;
-        const double d = e * (1 + e * (a2 + e * (2 * a2 * a2 - a3)));
-        slope -= slope * d;
-        if (std::abs(e) < last_step) return {slope, incision * (1 - d * (n_ - d * (second_ - d * third_))), step};
+        const Corrected corrected = correct(slope, drop, length, c);
+        if (!(std::abs(corrected.newton_step) < largest_step)) break;
+        slope = corrected.slope;
+        if (std::abs(corrected.newton_step) < last_step) return {slope, corrected.incision_m, step};
     }
     return solve_scaled(drop, length, c);
+}
+
+template <int lanes>
+int SlopeSolver::solve(const double* drop, const double* length, const double* c, double* slope,
+                       double* incision_m) const {
+    double height[lanes], found[lanes], incision[lanes], newton_step[lanes];
+    for (int i = 0; i < lanes; ++i) height[i] = drop[i] > 0 ? drop[i] : 1;
+    for (int i = 0; i < lanes; ++i) found[i] = start(height[i], length[i], c[i]);
+    for (int i = 0; i < lanes; ++i) {
+        const Corrected corrected = correct(found[i], height[i], length[i], c[i]);
+        found[i] = corrected.slope;
+        incision[i] = corrected.incision_m;
+        newton_step[i] = std::abs(corrected.newton_step);
+    }
+    for (int i = 0; i < lanes; ++i) slope[i] = drop[i] > 0 ? found[i] : 0;
+    for (int i = 0; i < lanes; ++i) incision_m[i] = drop[i] > 0 ? incision[i] : 0;
+    double largest = 0;
+    for (int i = 0; i < lanes; ++i) largest = newton_step[i] < last_step ? largest : 1;
+    if (largest == 0) return 1;
+    int iterations = 1;
+    for (int i = 0; i < lanes; ++i) {
+        if (newton_step[i] < last_step || !(drop[i] > 0)) continue;
+        const SlopeAndIncision solution = solve_power(drop[i], length[i], c[i]);
+        slope[i] = solution.slope;
+        incision_m[i] = solution.incision_m;
+        iterations = iterations < solution.iterations ? solution.iterations : iterations;
+    }
+    return iterations;
 }
 
 }  // namespace thalweg::evolve

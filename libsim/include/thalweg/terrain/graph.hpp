@@ -9,12 +9,21 @@
 
 namespace thalweg::terrain {
 
+/// How an order may be swept by several nodes and threads at a time: from the outlets up, part 0 (the trunk) must come
+/// first, and then the other parts are independent of each other; within a part, layer by layer, and no node of a layer
+/// flows to another of the same layer. A function of the directions alone.
+struct FlowLayers {
+    std::vector<Index> begin;  ///< position in the order where each layer begins, and the end
+    std::vector<Index> part;   ///< number of the layer with which each part begins, and the number of layers
+};
+
 /// Where all water goes: from here on the geometry is not needed, and a DEM, a simulated mesh and a grown network look
 /// the same to every statistic.
 struct FlowGraph {
     std::vector<Index> receiver;   ///< per node; `none` at outlets and nodes without data
     std::vector<double> length;    ///< per node: distance to the receiver (m); 0 where there is none
     std::vector<Index> order;      ///< every node with data once, each after its receiver
+    FlowLayers layers = {};        ///< of the order; empty where nobody knows them
 
     Index size() const { return static_cast<Index>(receiver.size()); }
 

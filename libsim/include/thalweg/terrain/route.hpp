@@ -22,6 +22,10 @@ FlowDirections route(const Grid&, std::span<const double> elevation_m, std::span
 FlowDirections route(const Mesh&, std::span<const double> elevation_m, std::span<const Boundary>,
                      Receiver = Receiver::steepest);
 
+/// The same into memory that is already there.
+void route(const Grid&, std::span<const double> elevation_m, std::span<const Boundary>, Receiver, FlowDirections& into);
+void route(const Mesh&, std::span<const double> elevation_m, std::span<const Boundary>, Receiver, FlowDirections& into);
+
 /// `open` at cells with data on the grid's edge or beside a cell without data, else `interior`.
 std::vector<Boundary> data_edge(const Grid&, std::span<const double> elevation_m);
 
