@@ -84,8 +84,7 @@ template <Topology T>
 StepReport step(Run<T>& run, SimulationState& state) {
     Landscape& landscape = state.landscape;
     const River& river = run.model.river;
-    drain_into(run.topology, landscape, run.setting, river, state.exchange.frozen, run.drainage,
-               run.buffers);
+    drain_into(run.topology, landscape, run.setting, river, state.exchange.frozen, run.drainage, run.buffers);
     const StepSums sums = with_edges(run.topology, [&](const auto& edges) {
         return dig(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr, landscape);
     });

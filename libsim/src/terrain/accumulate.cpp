@@ -29,8 +29,8 @@ void part_down(const FlowGraph& graph, Index begin, Index end, Index first, Inde
     }
 }
 
-/// Calls give(node), which changes the receiver alone, for every node that has one: after all that flow to the node, and
-/// for each receiver in a fixed order. By blocks where the order's parts are known.
+/// Calls give(node), which changes the receiver alone, for every node that has one: after all that flow to the node,
+/// and for each receiver in a fixed order. By blocks where the order's parts are known.
 template <class Give>
 void from_leaves_down(const FlowGraph& graph, const Give& give) {
     const auto& layers = graph.layers;

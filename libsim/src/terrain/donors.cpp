@@ -9,17 +9,19 @@
 namespace thalweg::terrain {
 namespace {
 
-/// A neighbour is a donor if its direction is the reverse of the one that leads to it. Comparisons of bytes, summed: the
-/// loop vectorises. The first and the last column lack neighbours.
+/// A neighbour is a donor if its direction is the reverse of the one that leads to it. Comparisons of bytes, summed:
+/// the loop vectorises. The first and the last column lack neighbours.
 void count_in_row(const Slot* above, const Slot* here, const Slot* below, Index cols, std::uint8_t* donors) {
     for (Index c = 0; c < cols; ++c) {
         donors[c] = static_cast<std::uint8_t>((above[c] == 2) + (below[c] == 6));
     }
     for (Index c = 1; c < cols; ++c) {
-        donors[c] = static_cast<std::uint8_t>(donors[c] + (here[c - 1] == 0) + (above[c - 1] == 1) + (below[c - 1] == 7));
+        donors[c] =
+            static_cast<std::uint8_t>(donors[c] + (here[c - 1] == 0) + (above[c - 1] == 1) + (below[c - 1] == 7));
     }
     for (Index c = 0; c + 1 < cols; ++c) {
-        donors[c] = static_cast<std::uint8_t>(donors[c] + (here[c + 1] == 4) + (below[c + 1] == 5) + (above[c + 1] == 3));
+        donors[c] =
+            static_cast<std::uint8_t>(donors[c] + (here[c + 1] == 4) + (below[c + 1] == 5) + (above[c + 1] == 3));
     }
 }
 

@@ -6,8 +6,8 @@
 
 #include "terrain/check_sizes.hpp"
 #include "terrain/downhill.hpp"
-#include "terrain/row_lengths.hpp"
 #include "terrain/layered_order.hpp"
+#include "terrain/row_lengths.hpp"
 #include "thalweg/core/parallel.hpp"
 
 namespace thalweg::terrain {

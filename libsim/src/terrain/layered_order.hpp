@@ -76,14 +76,17 @@ class BlockWalk {
         for (const Index end = free_; next_ != end;) {
             const Index node = queue_[--next_];
             const Slot slot = directions_[node];
-            if (slot == no_flow) [[unlikely]] continue;
+            if (slot == no_flow) [[unlikely]]
+                continue;
             const Index receiver = neighbor_(node, slot);
             if (receiver - first_ >= size_) [[unlikely]] {
                 part_.crossing.push_back(node);
                 continue;
             }
             pass_(node, receiver);
-            push_if(--awaited_[receiver] == 0, receiver);
+            const auto left = static_cast<std::uint8_t>(awaited_[receiver] - 1);
+            awaited_[receiver] = static_cast<std::uint8_t>(left - (left == 0));  // 255: placed, and no leaf
+            push_if(left == 0, receiver);
         }
     }
 

@@ -20,10 +20,10 @@ struct FlowLayers {
 /// Where all water goes: from here on the geometry is not needed, and a DEM, a simulated mesh and a grown network look
 /// the same to every statistic.
 struct FlowGraph {
-    std::vector<Index> receiver;   ///< per node; `none` at outlets and nodes without data
-    std::vector<double> length;    ///< per node: distance to the receiver (m); 0 where there is none
-    std::vector<Index> order;      ///< every node with data once, each after its receiver
-    FlowLayers layers = {};        ///< of the order; empty where nobody knows them
+    std::vector<Index> receiver;  ///< per node; `none` at outlets and nodes without data
+    std::vector<double> length;   ///< per node: distance to the receiver (m); 0 where there is none
+    std::vector<Index> order;     ///< every node with data once, each after its receiver
+    FlowLayers layers = {};       ///< of the order; empty where nobody knows them
 
     Index size() const { return static_cast<Index>(receiver.size()); }
 
@@ -34,8 +34,8 @@ struct FlowGraph {
     }
 };
 
-/// Nodes with data (elevation not NaN), each after its receiver. Linear, without recursion; a function of the directions
-/// alone. `directions` must be free of loops.
+/// Nodes with data (elevation not NaN), each after its receiver. Linear, without recursion; a function of the
+/// directions alone. `directions` must be free of loops.
 std::vector<Index> downstream_first_order(const Grid&, std::span<const double> elevation_m, const FlowDirections&);
 std::vector<Index> downstream_first_order(const Mesh&, std::span<const double> elevation_m, const FlowDirections&);
 
