@@ -13,7 +13,7 @@ const std::map<std::string, study::Conditioning> conditionings{
 struct Options {
     CommonOptions common;
     DemOptions dem;
-    std::string file, theta;
+    std::string file, theta, knickpoint_prominence;
     std::string conditioning = "fill";
 };
 
@@ -21,6 +21,10 @@ void run(const Options& options) {
     study::MeasureOptions measure = measure_options(options.dem);
     measure.conditioning = conditionings.at(options.conditioning);
     if (!options.theta.empty()) measure.theta = parse_number("--theta", options.theta, Sign::positive);
+    if (!options.knickpoint_prominence.empty()) {
+        measure.knickpoint_prominence_m =
+            parse_number("--knickpoint-prominence-m", options.knickpoint_prominence, Sign::positive);
+    }
     const io::ReadOptions read = read_options(options.dem);
     run_into_folder(options.common, "analyze", [&](const auto& folder, const study::Messages& m) {
         return study::analyze(study::read_dem(options.file, read, m), measure, folder, m);
@@ -39,6 +43,9 @@ void add_analyze(CLI::App& app) {
         ->check(CLI::IsMember({"fill", "carve", "none"}))
         ->capture_default_str();
     command->add_option("--theta", options->theta, "concavity for chi and ksn [default: 0.45]");
+    command->add_option("--knickpoint-prominence-m", options->knickpoint_prominence,
+                        "height above the steepest concave profile from which a place is a knickpoint [default: 5 % of "
+                        "the rivers' relief]");
     add_dem_options(*command, options->dem);
     add_common_options(*command, options->common, "analysis");
     command->callback([options] { run(*options); });

@@ -97,10 +97,10 @@ TEST_CASE("A steady landscape shows its concavity and steepness in chi, on its n
         MeasureOptions options;
         options.edge_basins = terrain::EdgeBasins::keep;
         const ChiStatistics on_raster = measure_raster(elevation, options).statistics.chi;
-        INFO(name << " ksn " << on_raster.ksn_median << " theta " << on_raster.theta_best.value);
+        INFO(name << " ksn " << on_raster.ksn_median << " theta " << on_raster.concavity.linearity.value);
         const bool same_cells = mesh == MeshKind::raster;
         CHECK(on_raster.ksn_median == Approx(25).epsilon(same_cells ? 0.02 : 0.15));
-        CHECK(on_raster.theta_best.value == Approx(0.45).margin(same_cells ? 0.01 : 0.05));
+        CHECK(on_raster.concavity.linearity.value == Approx(0.45).margin(same_cells ? 0.01 : 0.05));
     }
 }
 

@@ -39,13 +39,34 @@ Statistics drawn_statistics() {
     s.shreve_of = channel::shreve_magnitudes(graph, channel);
     s.network =
         channel::stream_network(graph, channel, support::upstream_counts(graph), Doubles{0, 10, 15, 30, 70, 33, 36});
+    s.network_laws.main_streams = channel::main_streams(s.network);
+    s.network_laws.pfafstetter = channel::pfafstetter_codes(s.network);
+    s.chi.theta = 0;
+    s.chi.reference_area_m2 = 1e6;
+    s.chi.profile = channel::channel_profile(graph, channel, support::upstream_counts(graph),
+                                             Doubles{0, 10, 15, 30, 70, 33, 36});
+    s.chi.chi_m = channel::chi(s.chi.profile, 0, 1e6);
+    s.chi.knickpoints = channel::knickpoints(s.chi.profile, s.chi.chi_m, 0, 1e6, 5);
     return s;
 }
 
 }  // namespace
 
+TEST_CASE("The table of knickpoints holds the place where the main stream is convex, with the steepness on both sides") {
+    // The main stream 0, 10, 30, 33, 36 at distances 0, 5, 10, 15, 20: 30 stands 12 above the line from 0 to 36.
+    const Table points = knickpoints_table(drawn_statistics(), drawn_position);
+    CHECK(points.kind == GeometryKind::point);
+    CHECK(column<Doubles>(points, "elevation_m") == Doubles{30});
+    CHECK(column<Doubles>(points, "prominence_m") == Doubles{12});
+    CHECK(column<Doubles>(points, "ksn_below") == Doubles{3});
+    CHECK(column<Doubles>(points, "ksn_above") == Doubles{0.6});
+    CHECK(column<Doubles>(points, "chi_m") == Doubles{10});
+    REQUIRE(points.geometry.size() == 1);
+    CHECK(points.geometry[0].front().x == drawn_position(3).x);
+}
+
 TEST_CASE("The table of links holds every link with its own numbers") {
-    const Table links = links_table(drawn_statistics().network, drawn_position);
+    const Table links = links_table(drawn_statistics(), drawn_position);
     CHECK(links.kind == GeometryKind::line);
     // 1-0, 2-1, 3-1, 4-3, 6-5-3
     CHECK(column<Wholes>(links, "id") == Wholes{0, 1, 2, 3, 4});
@@ -56,6 +77,9 @@ TEST_CASE("The table of links holds every link with its own numbers") {
     CHECK(column<Doubles>(links, "drop_m") == Doubles{10, 5, 20, 40, 6});
     CHECK(column<Doubles>(links, "slope") == Doubles{2, 1, 4, 8, 0.6});
     CHECK(column<Doubles>(links, "area_m2") == Doubles{7, 1, 4, 1, 2});
+    CHECK(column<Wholes>(links, "hack") == Wholes{1, 2, 1, 2, 1});
+    CHECK(column<Wholes>(links, "pfafstetter") == Wholes{1, 2, 3, 4, 5});
+    CHECK(column<Doubles>(links, "ksn") == Doubles{2, 1, 4, 8, 0.6});
     REQUIRE(links.geometry[4].size() == 3);
     CHECK(links.geometry[4][0].x == 106);
     CHECK(links.geometry[4][1].y == 190);

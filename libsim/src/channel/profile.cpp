@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/channel/profile.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "thalweg/core/statistics.hpp"
 
 namespace thalweg::channel {
 
@@ -65,6 +68,27 @@ std::vector<double> steepness(const Profile& profile, std::span<const double> ch
         while (at != none && profile.elevation_m[i] - profile.elevation_m[at] < enough) at = lower[at];
         if (at == none) continue;
         result[i] = scale * (profile.elevation_m[i] - profile.elevation_m[at]) / (chi_m[i] - chi_m[at]);
+    }
+    return result;
+}
+
+std::vector<double> link_steepness(const StreamNetwork& network, const Profile& profile, std::span<const double> chi_m,
+                                   double theta, double reference_area_m2) {
+    const Index highest = network.nodes.empty() ? 0 : *std::ranges::max_element(network.nodes) + 1;
+    std::vector<Index> row_of(highest, none);
+    for (Index row = 0; row < profile.size(); ++row) {
+        if (profile.node[row] < highest) row_of[profile.node[row]] = row;
+    }
+    std::vector<double> result, x, z;
+    for (Index link = 0; link < network.size(); ++link) {
+        x.clear();
+        z.clear();
+        for (const Index node : network.nodes_of(link)) {
+            if (row_of[node] == none) continue;
+            x.push_back(chi_m[row_of[node]]);
+            z.push_back(profile.elevation_m[row_of[node]]);
+        }
+        result.push_back(fit_line(x, z).slope.value * std::pow(reference_area_m2, theta));
     }
     return result;
 }

@@ -81,12 +81,11 @@ void write_tables(const Raster& dem, const Statistics& s, const std::filesystem:
     const PositionOf position = positions(dem);
     auto outlines = io::cell_outlines(dem, s.basin_of, static_cast<Index>(s.basins.size()));
     io::write_geopackage(folder / "network.gpkg",
-                         {links_table(s.network, position), junctions_table(s, position),
-                          basins_table(s, position, std::move(outlines))},
+                         network_layers(s, position, std::move(outlines)),
                          dem.placement.crs_wkt);
     io::write_csv(folder / "hypsometry.csv", hypsometry_table(s.hypsometry));
     io::write_csv(folder / "chi.csv", chi_table(s, position));
-    io::write_csv(folder / "links.csv", link_values(s.network));
+    io::write_csv(folder / "links.csv", link_values(s));
     io::write_csv(folder / "slope_area.csv", slope_area_table(s.slope_area.bins));
     io::write_csv(folder / "slope_area_points.csv", slope_area_points_table(s.slope_area_points));
 }

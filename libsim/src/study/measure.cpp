@@ -79,13 +79,17 @@ NetworkStatistics network_statistics(const RoutedTerrain& terrain, const Statist
                         .flint = channel::flint_law(s.network),
                         .junction_reach_m = channel::junction_reach(s.network),
                         .junctions = {},
+                        .cis_trans = {},
+                        .main_streams = channel::main_streams(s.network),
+                        .pfafstetter = channel::pfafstetter_codes(s.network),
                         .width = channel::width_function(s.network),
                         .area_exceedance = exceedance_in_largest_basin(terrain, s, threshold_m2)};
     const channel::OffsetOf unknown = [](Index, Index) {
         return Point{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
     };
-    n.junctions = channel::junction_angles(s.network, terrain.offset_m ? terrain.offset_m : unknown, n.junction_reach_m,
-                                           n.flint.exponent.value);
+    const channel::OffsetOf& offset = terrain.offset_m ? terrain.offset_m : unknown;
+    n.junctions = channel::junction_angles(s.network, offset, n.junction_reach_m, n.flint.exponent.value);
+    if (terrain.offset_m) n.cis_trans = channel::cis_trans_links(s.network, offset, n.junction_reach_m);
     return n;
 }
 
@@ -184,6 +188,12 @@ std::vector<channel::SlopeAreaPoint> segments(const RoutedTerrain& carved, Raste
         {.drop_m = m.segment_drop_m, .smallest_drop_m = 3 * m.vertical_quantum_m, .smallest_area_m2 = threshold_m2});
 }
 
+double relief_of(const std::vector<double>& elevation_m) {
+    if (elevation_m.empty()) return 0;
+    const auto [lowest, highest] = std::ranges::minmax_element(elevation_m);
+    return *highest - *lowest;
+}
+
 std::vector<Boundary> boundary_of(const Raster& raster, const MeasureOptions& options) {
     if (!options.catchment_outlet) return terrain::data_edge(raster.grid, raster.values);
     std::vector<Boundary> boundary(raster.grid.size(), Boundary::interior);
@@ -254,14 +264,22 @@ ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions& opt
                     .chi_m = {},
                     .ksn = {},
                     .ksn_median = 0,
-                    .theta_best = {}};
+                    .concavity = {},
+                    .knickpoint_prominence_m = 0,
+                    .knickpoints = {}};
     c.profile = channel::channel_profile(carved.graph, channels, carved.drainage_area_m2, carved.elevation_m);
     c.chi_m = channel::chi(c.profile, c.theta, c.reference_area_m2);
     c.ksn = channel::steepness(c.profile, c.chi_m, c.theta, c.reference_area_m2, drop_m);
     std::vector<double> known;
     std::ranges::copy_if(c.ksn, std::back_inserter(known), [](double value) { return !std::isnan(value); });
     c.ksn_median = quantile(std::move(known), 0.5);
-    c.theta_best = channel::concavity(c.profile).linearity;
+    c.concavity = channel::concavity(c.profile);
+    c.knickpoint_prominence_m =
+        options.knickpoint_prominence_m.value_or(std::max(drop_m, 0.05 * relief_of(c.profile.elevation_m)));
+    if (c.knickpoint_prominence_m > 0) {
+        c.knickpoints =
+            channel::knickpoints(c.profile, c.chi_m, c.theta, c.reference_area_m2, c.knickpoint_prominence_m);
+    }
     return c;
 }
 

@@ -37,10 +37,13 @@ Json lengths_json(const channel::LengthStatistics& lengths) {
     return {{"count", lengths.count}, {"mean_length_m", number(lengths.mean_m)}, {"sd_length_m", number(lengths.sd_m)}};
 }
 
-Json links_json(const channel::LinkLengths& links) {
+Json links_json(const channel::LinkLengths& links, const channel::CisTrans& sides) {
     return {{"exterior", lengths_json(links.exterior)},
             {"interior", lengths_json(links.interior)},
-            {"exterior_interior_ratio", number(links.exterior_interior_ratio)}};
+            {"exterior_interior_ratio", number(links.exterior_interior_ratio)},
+            {"cis", lengths_json(sides.cis)},
+            {"trans", lengths_json(sides.trans)},
+            {"cis_share", number(sides.cis_share)}};
 }
 
 Json junctions_json(const channel::JunctionAngles& angles, double reach_m) {
@@ -65,7 +68,7 @@ Json exceedance_json(const PowerLawFit& law) {
 Json network_json(const NetworkStatistics& n, std::vector<std::string>& notes) {
     Json json{{"tokunaga", tokunaga_json(n.tokunaga)},
               {"hack", power_law_json(n.hack, "coefficient", "exponent")},
-              {"links", links_json(n.links)},
+              {"links", links_json(n.links, n.cis_trans)},
               {"flint", power_law_json(n.flint, "p", "q")},
               {"junctions", junctions_json(n.junctions, n.junction_reach_m)},
               {"area_exceedance", exceedance_json(n.area_exceedance)},
@@ -73,7 +76,7 @@ Json network_json(const NetworkStatistics& n, std::vector<std::string>& notes) {
     const auto explain = [&](const char* key, const char* reason) { explain_null(key, json[key], reason, notes); };
     explain("tokunaga", "a and c need side tributaries of two differences of order, their errors of three");
     explain("hack", "the law needs two links, its errors three");
-    explain("links", "a mean needs one link of its kind, a standard deviation two");
+    explain("links", "a mean needs one link of its kind, a standard deviation two, cis_share one that is cis or trans");
     explain("flint", "p and q need two classes of magnitude with a fall, their errors three");
     explain("junctions", "an angle needs a junction of exactly two rivers, its spread two, Howard's angle Flint's q");
     explain("area_exceedance",
@@ -84,11 +87,16 @@ Json network_json(const NetworkStatistics& n, std::vector<std::string>& notes) {
 
 Json chi_json(const ChiStatistics& c, std::vector<std::string>& notes) {
     Json json{{"theta", c.theta}, {"reference_area_m2", c.reference_area_m2}, {"ksn_median", number(c.ksn_median)}};
-    add_estimate(json, "theta_best", c.theta_best);
+    add_estimate(json, "theta_best", c.concavity.linearity);
+    add_estimate(json, "theta_collinearity", c.concavity.collinearity);
+    add_estimate(json, "theta_disorder", c.concavity.disorder);
     explain_null("chi", json,
-                 "ksn needs a river that falls by a segment's drop, theta_best one of at least 20 nodes that is "
-                 "straightest within 0 to 1.5, and its errors at least five such rivers",
+                 "ksn needs a river that falls by a segment's drop; each theta a river of at least 20 nodes whose best "
+                 "value lies within 0 to 1.5 (collinearity and disorder: with tributaries), and its errors at least "
+                 "five such rivers or tributaries",
                  notes);
+    json["knickpoints"] = c.knickpoints.size();
+    json["knickpoint_prominence_m"] = c.knickpoint_prominence_m;
     return json;
 }
 

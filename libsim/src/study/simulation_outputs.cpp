@@ -140,14 +140,13 @@ void write_results(const Heightfield& h, const Finished& f, const Outcome& o, co
     const Statistics& s = f.statistics;
     auto outlines = io::cell_outlines(e, h.basin_of, static_cast<Index>(s.basins.size()));
     io::write_geopackage(folder / "network.gpkg",
-                         {links_table(s.network, position), junctions_table(s, position),
-                          basins_table(s, position, std::move(outlines))},
+                         network_layers(s, position, std::move(outlines)),
                          e.placement.crs_wkt);
     io::write_csv(folder / "slope_area_nodes.csv", node_table(f));
     io::write_csv(folder / "slope_area.csv", slope_area_table(s.slope_area.bins));
     io::write_csv(folder / "hypsometry.csv", hypsometry_table(s.hypsometry));
     io::write_csv(folder / "chi.csv", chi_table(s, position));
-    io::write_csv(folder / "links.csv", link_values(s.network));
+    io::write_csv(folder / "links.csv", link_values(s));
     io::write_csv(folder / "history.csv", history_table(o.history));
 }
 

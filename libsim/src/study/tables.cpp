@@ -37,6 +37,10 @@ std::map<Index, Meeting> meetings(const channel::StreamNetwork& network) {
     return all;
 }
 
+Doubles link_ksn(const Statistics& s) {
+    return channel::link_steepness(s.network, s.chi.profile, s.chi.chi_m, s.chi.theta, s.chi.reference_area_m2);
+}
+
 }  // namespace
 
 PositionOf positions(const Raster& raster) {
@@ -45,14 +49,17 @@ PositionOf positions(const Raster& raster) {
     };
 }
 
-Table link_values(const channel::StreamNetwork& network) {
-    Wholes id, downstream, strahler, shreve;
+Table link_values(const Statistics& s) {
+    const channel::StreamNetwork& network = s.network;
+    const channel::MainStreams& main = s.network_laws.main_streams;
+    Wholes id, downstream, strahler, shreve, hack;
     Doubles slope;
     for (Index link = 0; link < network.size(); ++link) {
         id.push_back(link);
         downstream.push_back(or_minus_one(network.downstream[link]));
         strahler.push_back(network.strahler[link]);
         shreve.push_back(network.shreve[link]);
+        hack.push_back(main.order[main.stream[link]]);
         slope.push_back(network.drop_m[link] / network.length_m[link]);
     }
     return {.name = "links",
@@ -63,13 +70,17 @@ Table link_values(const channel::StreamNetwork& network) {
                         {"length_m", network.length_m},
                         {"drop_m", network.drop_m},
                         {"slope", slope},
-                        {"area_m2", network.area_m2}},
+                        {"area_m2", network.area_m2},
+                        {"hack", hack},
+                        {"pfafstetter", s.network_laws.pfafstetter},
+                        {"ksn", link_ksn(s)}},
             .kind = GeometryKind::no_geometry,
             .geometry = {}};
 }
 
-Table links_table(const channel::StreamNetwork& network, const PositionOf& position) {
-    Table table = link_values(network);
+Table links_table(const Statistics& s, const PositionOf& position) {
+    const channel::StreamNetwork& network = s.network;
+    Table table = link_values(s);
     table.kind = GeometryKind::line;
     for (Index link = 0; link < network.size(); ++link) {
         std::vector<Point>& line = table.geometry.emplace_back();
@@ -94,6 +105,27 @@ Table junctions_table(const Statistics& s, const PositionOf& position) {
     table.columns = {
         {"kind", kind}, {"inflows", inflows}, {"downstream", downstream}, {"strahler", strahler}, {"shreve", shreve}};
     return table;
+}
+
+Table knickpoints_table(const Statistics& s, const PositionOf& position) {
+    const auto& rows = s.chi.knickpoints;
+    const channel::Profile& profile = s.chi.profile;
+    Table table{.name = "knickpoints",
+                .columns = {{"elevation_m", column_of(rows, [&](const auto& k) { return profile.elevation_m[k.row]; })},
+                            {"area_m2", column_of(rows, [&](const auto& k) { return profile.area_m2[k.row]; })},
+                            {"chi_m", column_of(rows, [&](const auto& k) { return s.chi.chi_m[k.row]; })},
+                            {"prominence_m", column_of(rows, [](const auto& k) { return k.prominence_m; })},
+                            {"ksn_above", column_of(rows, [](const auto& k) { return k.ksn_above; })},
+                            {"ksn_below", column_of(rows, [](const auto& k) { return k.ksn_below; })}},
+                .kind = GeometryKind::point,
+                .geometry = {}};
+    for (const auto& k : rows) table.geometry.push_back({position(profile.node[k.row])});
+    return table;
+}
+
+std::vector<Table> network_layers(const Statistics& s, const PositionOf& position, std::vector<MultiPolygon> outlines) {
+    return {links_table(s, position), junctions_table(s, position), basins_table(s, position, std::move(outlines)),
+            knickpoints_table(s, position)};
 }
 
 Table basins_table(const Statistics& s, const PositionOf& position, std::vector<MultiPolygon> outlines) {

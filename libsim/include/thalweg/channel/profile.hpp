@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "thalweg/channel/network.hpp"
 #include "thalweg/terrain/graph.hpp"
 
 namespace thalweg::channel {
@@ -34,5 +35,10 @@ std::vector<double> chi(const Profile&, double theta, double reference_area_m2);
 /// ends before it has fallen so far. `chi_m` as chi() gave it for the same θ and A0.
 std::vector<double> steepness(const Profile&, std::span<const double> chi_m, double theta, double reference_area_m2,
                               double smallest_drop_m);
+
+/// Steepness of each link (m^(2θ)): slope of the regression of elevation on χ over those of its nodes that the profile
+/// holds, times A0^θ; NaN where fewer than two places in χ are left.
+std::vector<double> link_steepness(const StreamNetwork&, const Profile&, std::span<const double> chi_m, double theta,
+                                   double reference_area_m2);
 
 }  // namespace thalweg::channel

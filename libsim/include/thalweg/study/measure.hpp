@@ -8,8 +8,10 @@
 #include "thalweg/channel/concavity.hpp"
 #include "thalweg/channel/extent.hpp"
 #include "thalweg/channel/horton.hpp"
+#include "thalweg/channel/knickpoints.hpp"
 #include "thalweg/channel/laws.hpp"
 #include "thalweg/channel/links.hpp"
+#include "thalweg/channel/main_streams.hpp"
 #include "thalweg/channel/network.hpp"
 #include "thalweg/channel/profile.hpp"
 #include "thalweg/channel/slope_area.hpp"
@@ -34,6 +36,7 @@ struct MeasureOptions {
     std::optional<Index> catchment_outlet{};  ///< the raster is one catchment that leaves here: its
                                               ///< rim is a divide, not a cut
     double theta = 0.45;                      ///< concavity for chi and ksn
+    std::optional<double> knickpoint_prominence_m{};  ///< default: 5 % of the rivers' relief, at least a segment's drop
 };
 
 /// A terrain once it is routed: a DEM, a simulated mesh and a grown network look the same from here on.
@@ -73,6 +76,9 @@ struct NetworkStatistics {
     PowerLawFit flint;  ///< slope of 2·magnitude − 1
     double junction_reach_m;
     channel::JunctionAngles junctions;
+    channel::CisTrans cis_trans;
+    channel::MainStreams main_streams;      ///< rows: links
+    std::vector<std::int64_t> pfafstetter;  ///< per link
     channel::WidthFunction width;
     PowerLawFit area_exceedance;  ///< of the largest basin; the exponent is −β
 };
@@ -83,7 +89,9 @@ struct ChiStatistics {
     channel::Profile profile;
     std::vector<double> chi_m, ksn;  ///< per node of the profile; NaN where ksn is not known
     double ksn_median;
-    Estimate theta_best;
+    channel::Concavity concavity;
+    double knickpoint_prominence_m;  ///< from which on a knickpoint counts; 0: the profile has no relief
+    std::vector<channel::Knickpoint> knickpoints;
 };
 
 /// Every statistic of one terrain.

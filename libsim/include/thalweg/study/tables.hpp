@@ -16,14 +16,20 @@ using PositionOf = std::function<Point(Index)>;
 PositionOf positions(const Raster&);
 
 /// Layers `links` (lines along the flow), `junctions` (points; outlets and sources too) of a measured network.
-Table links_table(const channel::StreamNetwork&, const PositionOf&);
+Table links_table(const Statistics&, const PositionOf&);
 Table junctions_table(const Statistics&, const PositionOf&);
 
 /// Layer `basins`: one polygon per basin of the statistics; `outlines[i]` belongs to basin i.
 Table basins_table(const Statistics&, const PositionOf&, std::vector<MultiPolygon> outlines);
 
+/// Layer `knickpoints`: points with their prominence (m) and the steepness above and below.
+Table knickpoints_table(const Statistics&, const PositionOf&);
+
+/// All layers of network.gpkg.
+std::vector<Table> network_layers(const Statistics&, const PositionOf&, std::vector<MultiPolygon> outlines);
+
 /// links.csv: the layer's columns without its lines.
-Table link_values(const channel::StreamNetwork&);
+Table link_values(const Statistics&);
 
 /// chi.csv: one row per channel node; `basin` is the number of the basin its river leaves by, −1 outside of all.
 Table chi_table(const Statistics&, const PositionOf&);
