@@ -6,6 +6,7 @@ lists runs (the setting and overrides), measures each, judges the rows against w
 stands in `results/CASE.csv`; nothing that others published stands there.
 """
 import csv
+import io
 import itertools
 import json
 import os
@@ -52,9 +53,10 @@ class Case:
     caption: str = ""
     measure: Callable = None             # (run, summary, folder) -> further columns, or a list of rows
     columns: tuple = ()                  # of the table in the README; all others stand in the CSV only
+    also_published: tuple = ()           # names of cases whose published rows it is judged by, too
     timed: bool = False                  # one run at a time, all threads
     palette: bool = False                # the figure is a map
-    compute: Callable = None             # (tools, quick) -> rows, where the thalweg command is not enough
+    compute: Callable = None             # (tools, quick) -> (rows, folders), where one command per row is not enough
 
 
 @dataclass
@@ -88,7 +90,7 @@ def verdict(claim, published, ours, criterion, met, explained=False, full_only=F
 def run_case(paper, case, tools, quick):
     """(rows, kept folders by position)."""
     if case.compute:
-        return case.compute(tools, quick), []
+        return case.compute(tools, quick)
     runs = case.runs(quick)
     workers = 1 if case.timed else max(1, os.cpu_count() or 1)
     with ThreadPoolExecutor(workers) as pool:
@@ -133,6 +135,17 @@ def _columns(summary):
             "elevation_max_m": summary["elevation_max_m"], "elevation_mean_m": summary["elevation_mean_m"],
             "talus_share": mass["talus_m3"] / mass["uplifted_m3"] if mass["uplifted_m3"] else None,
             "seconds_mesh": seconds["mesh"], "seconds_simulate": seconds["simulate"], "seconds_total": seconds["total"]}
+
+
+def printed_rows(tools, program, *arguments):
+    """Rows that a program of the papers' own prints as CSV."""
+    command = [os.path.join(tools.programs, program), *map(str, arguments)]
+    if not os.path.exists(command[0]):
+        raise Failure(f"{command[0]} does not exist: ./run papers builds it")
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise Failure(f"{' '.join(command)}: {done.stderr.strip() or done.returncode}")
+    return [{key: _value(text) for key, text in row.items()} for row in csv.DictReader(io.StringIO(done.stdout))]
 
 
 def history(folder, *columns):
@@ -186,7 +199,7 @@ def column(rows, name):
 
 
 def published_of(paper, case):
-    return [row for row in paper.published if row["case"] == case.name]
+    return [row for row in paper.published if row["case"] in (case.name, *case.also_published)]
 
 
 # ---- text

@@ -20,7 +20,7 @@ sys.path[:0] = [HERE, os.path.join(HERE, "..", "tools", "figures")]
 import harness  # noqa: E402
 import style  # noqa: E402
 
-PAPERS = ("bell_2024",)
+PAPERS = ("bell_2024", "braun_willett_2013", "cordonnier_2016")
 
 
 def load(name, root=HERE):
@@ -88,9 +88,14 @@ def changed_verdicts(paper, case, verdicts):
 
 
 def record_pages(papers, seconds):
+    """Writes machine.csv of what was run as a whole, and all pages once every case has a result."""
     for paper in papers:
         if paper.name in seconds:
             record_machine(paper, seconds[paper.name])
+    lacking = [f"{paper.name}/{case.name}" for paper in papers for case in paper.cases
+               if not os.path.exists(_results_path(paper.folder, case))]
+    if lacking:
+        raise harness.Failure(f"recorded; no page is written before these have results too: {', '.join(lacking)}")
     for path, text in pages(papers).items():
         with open(path, "w", encoding="utf-8") as stream:
             stream.write(text)

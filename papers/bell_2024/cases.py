@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The tables and figures with numbers of Bell (2024)."""
+import bell_cost
 import bell_heights
+import bell_pictures
 
 TITLE = "Bell 2024: stream-power terrain on Delaunay meshes"
 LEAD = """
@@ -8,4 +10,4 @@ A square of 32 768 m, m = 0.5, n = 1, k = 5.6e-7 /yr, u = 4e-4 m/yr, steps of 25
 uplift image, talus angle, initial surface and threshold of convergence are not stated: what is reproduced are trends and
 exponents, and his numbers stand beside ours. `experiment.toml` says what we take instead.
 """
-CASES = bell_heights.CASES
+CASES = bell_heights.CASES + bell_pictures.CASES + bell_cost.CASES
