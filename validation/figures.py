@@ -1,0 +1,83 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Draws what the validation cases measured: figures.py FOLDER_OF_CSV FOLDER_OF_PNG
+
+Each case writes NAME.csv when THALWEG_VALIDATION_OUT names a folder; the table below says how it is drawn. A CSV that
+is not in the table is an error, so that no case goes unseen.
+"""
+import csv
+import re
+import sys
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt
+
+ORDER = "order"  # errors over spacing, logarithmic, with the expected power beside them
+SPREAD = "spread"  # one column of dots per estimator
+
+# pattern of the name: (kind, title, expected power or truth)
+FIGURES = {
+    r"steady_profile": (ORDER, "Steady profile, Hack areas: error over relief", 1),
+    r"knickpoint_width": (ORDER, "Base-level fall, n = 1: width of the wave", 0.5),
+    r"response_time": (ORDER, "Answer to uplift from the plain: mean error over relief", 1),
+    r"two_solvers_(TIN|raster)_([\d.]+)": (SPREAD, "Steady solver and time stepping, {0}, n = {1}", None),
+    r"estimators_([\d.]+)_([\d.]+)_(\d+)": (SPREAD, "Blind estimates: θ = {0}, scatter {1}, heights in {2} m", None),
+    r"knickpoint_places": (SPREAD, "Knickpoints' χ over that of the wave", 1),
+}
+
+
+def read(path):
+    with open(path, newline="") as file:
+        rows = list(csv.DictReader(file))
+    return {name: [float(row[name]) for row in rows if row[name]] for name in rows[0]}
+
+
+def draw_order(axes, columns, power):
+    names = list(columns)
+    x = columns[names[0]]
+    for marker, name in zip("os^", names[1:]):
+        axes.loglog(x, columns[name], marker=marker, color="black", fillstyle="none", linewidth=0.8, label=name)
+    first = columns[names[1]]
+    axes.loglog(x, [first[0] * (value / x[0]) ** power for value in x], "--", color="grey", label=f"power {power:g}")
+    axes.set_xlabel(names[0])
+    axes.legend(frameon=False, fontsize=8)
+
+
+def draw_spread(axes, columns, truth):
+    for place, values in enumerate(columns.values()):
+        middle = sum(values) / len(values)
+        axes.plot([value / middle for value in values], [place] * len(values), "o", color="black", fillstyle="none")
+        axes.text(1.0, place + 0.18, f"mean {middle:.4g}", ha="center", fontsize=8)
+    if truth is not None:
+        axes.axvline(truth / (sum(next(iter(columns.values()))) / len(next(iter(columns.values())))), color="grey")
+    axes.set_yticks(range(len(columns)), list(columns), fontsize=8)
+    axes.set_ylim(-0.6, len(columns) - 0.2)
+    axes.set_xlabel("value over its mean")
+
+
+def draw(path, out):
+    for pattern, (kind, title, extra) in FIGURES.items():
+        match = re.fullmatch(pattern, path.stem)
+        if not match:
+            continue
+        figure, axes = plt.subplots(figsize=(5.2, 3.2), layout="constrained")
+        (draw_order if kind == ORDER else draw_spread)(axes, read(path), extra)
+        axes.set_title(title.format(*match.groups()), fontsize=9)
+        figure.savefig(out / (path.stem + ".png"), dpi=110, metadata={"Software": None})
+        plt.close(figure)
+        return
+    raise SystemExit(f"figures.py: no figure is described for {path.name}")
+
+
+def main():
+    source, out = Path(sys.argv[1]), Path(sys.argv[2])
+    out.mkdir(parents=True, exist_ok=True)
+    for path in sorted(source.glob("*.csv")):
+        draw(path, out)
+
+
+if __name__ == "__main__":
+    main()
