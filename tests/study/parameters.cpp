@@ -65,7 +65,7 @@ mesh_file = "ply"
 solid = true
 )");
     CHECK(e.seed == 7);
-    CHECK(e.outlets == OutletRule::all);
+    CHECK(e.outlets == Outlets{});
     CHECK(e.domain.size_m == std::vector<double>{20000, 10000.5});
     CHECK(e.domain.nodes == Index{2000});
     CHECK(e.domain.mesh == MeshKind::raster);
