@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "mesh/assemble.hpp"
 #include "mesh/constrained.hpp"
@@ -64,9 +63,9 @@ std::vector<Index> inverse(const std::vector<Index>& order) {
     return rank;
 }
 
-double domain_area(const Mesh& mesh) {
-    double area = polygon_area(mesh.outline);
-    for (const Polygon& hole : mesh.holes) area += polygon_area(hole);  // clockwise: negative
+double area_within(const Rings& rings) {
+    double area = 0;
+    for (const Polygon& ring : rings) area += polygon_area(ring);  // of holes, clockwise: negative
     return area;
 }
 
@@ -83,7 +82,7 @@ std::vector<Index> ring_starts(const PointSet& set) {
 }
 
 /// What every later computation relies on: each node has a cell, and the cells cover the domain once.
-void check_cells(const Mesh& mesh) {
+void check_cells(const Mesh& mesh, double domain) {
     double sum = 0;
     for (Index node = 0; node < mesh.size(); ++node) {
         if (!(mesh.cell_area[node] > 0)) {
@@ -93,7 +92,6 @@ void check_cells(const Mesh& mesh) {
         }
         sum += mesh.cell_area[node];
     }
-    const double domain = domain_area(mesh);
     if (!(std::abs(sum - domain) <= 1e-9 * domain)) {
         throw Error(fmt::format(
             "the cells cover {} m² of a domain of {} m²: the points on the outline do not follow it", sum, domain));
@@ -106,9 +104,8 @@ Mesh triangulate(const Polygon& outline, const PointSet& set) { return triangula
 
 Mesh triangulate(const PolygonPart& domain, const PointSet& set) {
     Mesh mesh;
-    Rings rings = checked_rings(domain);
-    mesh.outline = std::move(rings.front());
-    mesh.holes.assign(std::make_move_iterator(rings.begin() + 1), std::make_move_iterator(rings.end()));
+    const Rings rings = checked_rings(domain);
+    mesh.outline = rings.front();
     std::vector<Point> points = set.points;
     std::vector<Index> order = hilbert_order(points);
     Constrained constrained;
@@ -126,7 +123,7 @@ Mesh triangulate(const PolygonPart& domain, const PointSet& set) {
     sort_triangles(mesh);
     connect_neighbors(mesh);
     measure_cells(mesh);
-    check_cells(mesh);
+    check_cells(mesh, area_within(rings));
     return mesh;
 }
 

@@ -179,8 +179,7 @@ Site tin_site(const Experiment& e, const PolygonPart& outline_m, const std::stri
     site.domain.unit_m = unit_m;
     site.domain.placement.crs_wkt = crs_wkt;
     site.domain.area_m2 = area_of(outline_m);
-    site.rim.rings = mesh.holes;
-    site.rim.rings.insert(site.rim.rings.begin(), mesh.outline);
+    site.rim.rings = rings_of(outline_m);
     for (Index node = 0; node < mesh.size(); ++node) {
         site.nodes.plane_m.push_back({mesh.x[node], mesh.y[node]});
         site.nodes.map.push_back({mesh.x[node] / unit_m, mesh.y[node] / unit_m});

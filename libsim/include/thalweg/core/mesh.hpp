@@ -24,7 +24,6 @@ struct Mesh {
     std::vector<std::uint8_t> on_outline;        ///< 1 for the vertices of the domain's outline
     std::vector<std::array<Index, 3>> triangles; ///< counter-clockwise
     Polygon outline;                             ///< of the domain, counter-clockwise, m
-    std::vector<Polygon> holes;                  ///< in the domain, clockwise; their rims are outline too
 
     Index size() const { return static_cast<Index>(x.size()); }
     double area(Index node) const { return cell_area[node]; }

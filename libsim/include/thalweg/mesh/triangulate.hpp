@@ -7,7 +7,8 @@
 namespace thalweg::mesh {
 
 /// Delaunay triangulation of the points with the outline and its holes as constraints (the rings through the first
-/// `outline_count` points), as a `Mesh`: nodes renumbered along a Hilbert curve, Voronoi cells clipped to the domain.
+/// `outline_count` points; only the outer ring becomes `Mesh::outline`), as a `Mesh`: nodes renumbered along a Hilbert
+/// curve, Voronoi cells clipped to the domain.
 ///
 /// Where a vertex lies in the diametral disc of an outline edge, points are added on that edge (conforming Gabriel);
 /// none are for the points of `points.hpp`. Then every circumcentre lies in the domain, and the cell areas are sums of
