@@ -126,7 +126,7 @@ TEST_CASE("On a raster the DEM's outlet keeps its height, and the start is the D
             if (initial == InitialSurface::noise) CHECK(std::abs(start + 0.5) <= 0.25);
         }
     }
-    e.outlets = OutletRule::all;
+    e.outlets = Outlets{OutletRule::all};
     CHECK(base_levels(make_domain(e, c)) == 20);  // the rim of 7 x 5 cells
 }
 
@@ -151,7 +151,7 @@ TEST_CASE("On a TIN one node of the outline, the nearest to the outlet, is base 
         const auto cell = static_cast<std::size_t>(row) * 7 + static_cast<std::size_t>(col);
         CHECK(domain.start.elevation_m[node] == c.raster.values[cell]);
     }
-    e.outlets = OutletRule::all;
+    e.outlets = Outlets{OutletRule::all};
     const Domain open = make_domain(e, c);
     CHECK(base_levels(open) == static_cast<Index>(std::count(mesh.on_outline.begin(), mesh.on_outline.end(), 1)));
 }

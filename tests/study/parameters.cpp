@@ -65,7 +65,7 @@ mesh_file = "ply"
 solid = true
 )");
     CHECK(e.seed == 7);
-    CHECK(e.outlets == OutletRule::all);
+    CHECK(e.outlets == Outlets{});
     CHECK(e.domain.size_m == std::vector<double>{20000, 10000.5});
     CHECK(e.domain.nodes == Index{2000});
     CHECK(e.domain.mesh == MeshKind::raster);
@@ -162,7 +162,7 @@ TEST_CASE("A wrong type or a value out of range is refused with one sentence tha
         {"domain.size_m=[1]", "domain.size_m must be two numbers"},
         {"domain.size_m=[1, -2]", "domain.size_m must be above 0"},
         {"domain.dem=3", "domain.dem must be a file name"},
-        {"uplift.pattern=pyramid", "uplift.pattern must be \"constant\" or \"radial\""},
+        {"uplift.pattern=pyramid", "uplift.pattern must be \"constant\" or \"gradient\" or"},
         {"hillslope.talus_angle_deg=91", "hillslope.talus_angle_deg must be above 0 and at most 90"},
         {"seed=-1", "seed must be at least 0"},
         {"river=3", "unknown key"},
@@ -195,4 +195,36 @@ TEST_CASE("Every parameter has a text, a key of its own, and appears in the refe
     });
     std::sort(keys.begin(), keys.end());
     CHECK(std::adjacent_find(keys.begin(), keys.end()) == keys.end());
+}
+
+TEST_CASE("Outlets are a word, a list of sides or a share of the uplift, and are written as they were read") {
+    CHECK(read("outlets = \"dem\"\n").outlets == Outlets{OutletRule::dem});
+    CHECK(read("outlets = [\"north\", \"southeast\"]\n").outlets ==
+          Outlets{OutletRule::sides, {Side::north, Side::southeast}});
+    CHECK(read("", {"outlets=west"}).outlets == Outlets{OutletRule::sides, {Side::west}});
+    CHECK(read("outlets = { uplift_below = 0.33 }\n").outlets == Outlets{OutletRule::uplift_below, {}, 0.33});
+    for (const char* text : {"outlets = \"all\"\n", "outlets = \"dem\"\n", "outlets = [\"north\", \"southeast\"]\n",
+                             "outlets = { uplift_below = 0.33 }\n"}) {
+        CHECK(read(to_toml(read(text))).outlets == read(text).outlets);
+    }
+    for (const char* text : {"outlets = 3\n", "outlets = []\n", "outlets = [\"up\"]\n", "outlets = \"up\"\n",
+                             "outlets = { uplift_below = -1 }\n", "outlets = { below = 1 }\n", "outlets = [3]\n"}) {
+        INFO(text);
+        CHECK(test::is_sentence(refusal(text)));
+    }
+}
+
+TEST_CASE("Lines are one file or several, with one width and value or several, and are written as they were read") {
+    const Experiment one = read("[uplift]\nlines = \"a.gpkg\"\nlines_width_m = 50\nlines_value = 0.2\n");
+    CHECK(one.uplift.lines.size() == 1);
+    CHECK(one.uplift.lines_width_m == std::vector<double>{50});
+    const Experiment two =
+        read("[rainfall]\nlines = [\"/a.gpkg\", \"/b.gpkg\"]\nlines_width_m = 50\nlines_value = [0.2, 3]\n");
+    CHECK(two.rainfall.lines.size() == 2);
+    CHECK(two.rainfall.lines_value == std::vector<double>{0.2, 3});
+    const Experiment again = read(to_toml(two));
+    CHECK(again.rainfall.lines == two.rainfall.lines);
+    CHECK(again.rainfall.lines_value == two.rainfall.lines_value);
+    CHECK(test::is_sentence(refusal("[uplift]\nlines_width_m = 0\n")));
+    CHECK(test::is_sentence(refusal("[uplift]\nlines = 3\n")));
 }

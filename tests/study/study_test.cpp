@@ -278,7 +278,7 @@ TEST_CASE("Experiments that contradict themselves are refused with a sentence") 
     CHECK(refusal([](Experiment& e) { e.domain.nodes.reset(); }).find("domain.nodes") != std::string::npos);
     CHECK(refusal([](Experiment& e) { e.domain.spacing_m = 100; }).find("one of them") != std::string::npos);
     CHECK(refusal([](Experiment& e) { e.domain.dem = "x.tif"; }).find("x.tif") != std::string::npos);
-    CHECK(refusal([](Experiment& e) { e.outlets = OutletRule::dem; }).find("domain.dem") != std::string::npos);
+    CHECK(refusal([](Experiment& e) { e.outlets = Outlets{OutletRule::dem}; }).find("domain.dem") != std::string::npos);
     CHECK(refusal([](Experiment& e) {
               e.domain.mesh = MeshKind::raster;
               e.domain.nodes = 16;

@@ -87,8 +87,9 @@ def _varying(experiment):
     """What the experiment lets differ from place to place, in words; nothing where all is uniform."""
     uplift, rain = experiment.get("uplift", {}), experiment.get("rainfall", {})
     pattern = uplift.get("pattern", "constant")
-    if pattern != "constant" or uplift.get("field"):
+    if pattern != "constant" or uplift.get("field") or uplift.get("lines"):
         return "uplift" + (f" ({pattern})" if pattern != "constant" else "")
     if experiment.get("river", {}).get("k_field"):
         return "erodibility"
-    return "rainfall" if rain.get("pattern", "constant") != "constant" or rain.get("field") else ""
+    uneven_rain = rain.get("pattern", "constant") != "constant" or rain.get("field") or rain.get("lines")
+    return "rainfall" if uneven_rain else ""

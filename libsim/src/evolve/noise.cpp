@@ -57,6 +57,47 @@ struct LatticePosition {
     }
 };
 
+void check_fractal(double extent_m, const Fractal& fractal) {
+    if (extent_m > 0 && fractal.scale > 0 && fractal.octaves >= 1) return;
+    throw Error(
+        fmt::format("fractal noise needs a positive extent and scale and at least one octave, not {} m, {} and {}",
+                    extent_m, fractal.scale, fractal.octaves));
+}
+
+double total_weight(const Fractal& fractal) {
+    double weight = 1;
+    double weights = 0;
+    for (int octave = 0; octave < fractal.octaves; ++octave) {
+        weights += std::abs(weight);
+        weight *= fractal.persistence;
+    }
+    return weights;
+}
+
+double of_variant(NoiseVariant variant, double octave) {
+    if (variant == NoiseVariant::billow) return std::abs(octave);
+    return variant == NoiseVariant::ridge ? 1 - std::abs(octave) : octave;
+}
+
+/// Octaves added up by their weights, each as the variant wants it; `seed` shifts them.
+std::vector<double> summed(const PerlinNoise& noise, std::span<const Point> positions, double extent_m,
+                           std::uint64_t seed, NoiseVariant variant, const Fractal& fractal) {
+    std::vector<double> sum(positions.size(), 0.0);
+    double frequency = fractal.scale / extent_m;
+    double weight = 1;
+    for (int octave = 0; octave < fractal.octaves; ++octave) {
+        const double shift_x = 256 * uniform_at(seed, offset_stream, 2 * octave);
+        const double shift_y = 256 * uniform_at(seed, offset_stream, 2 * octave + 1);
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            const double own = noise(positions[i].x * frequency + shift_x, positions[i].y * frequency + shift_y);
+            sum[i] += weight * of_variant(variant, own);
+        }
+        weight *= fractal.persistence;
+        frequency *= fractal.lacunarity;
+    }
+    return sum;
+}
+
 }  // namespace
 
 PerlinNoise::PerlinNoise(std::uint64_t seed) : permutation_(256) {
@@ -95,28 +136,32 @@ double PerlinNoise::operator()(double x, double y, double z) const {
     return w == 0 ? layer(0) : mix(w, layer(0), layer(1));
 }
 
+std::vector<double> fractal_noise(std::span<const Point> positions, double extent_m, std::uint64_t seed,
+                                  NoiseVariant variant, const Fractal& fractal) {
+    check_fractal(extent_m, fractal);
+    const PerlinNoise noise(seed);
+    const double weight = total_weight(fractal);
+    std::vector<Point> places(positions.begin(), positions.end());
+    if (variant == NoiseVariant::warped) {
+        const double reach_m = 2 * extent_m / fractal.scale;
+        const auto shift_x = summed(noise, positions, extent_m, seed + 1, NoiseVariant::fbm, fractal);
+        const auto shift_y = summed(noise, positions, extent_m, seed + 2, NoiseVariant::fbm, fractal);
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            places[i].x += reach_m * shift_x[i] / weight;
+            places[i].y += reach_m * shift_y[i] / weight;
+        }
+    }
+    std::vector<double> values = summed(noise, places, extent_m, seed, variant, fractal);
+    for (double& value : values) value /= weight;
+    return values;
+}
+
 std::vector<double> perlin_surface(std::span<const Point> positions, double extent_m, double amplitude_m,
                                    std::uint64_t seed, const Fractal& fractal) {
-    if (!(extent_m > 0) || fractal.octaves < 1) {
-        throw Error(fmt::format("fractal noise needs a positive extent and at least one octave, not {} m and {}",
-                                extent_m, fractal.octaves));
-    }
-    const PerlinNoise noise(seed);
-    std::vector<double> surface(positions.size(), 0.0);
-    double frequency = fractal.scale / extent_m;
-    double weight = 1;
-    double weights = 0;
-    for (int octave = 0; octave < fractal.octaves; ++octave) {
-        const double shift_x = 256 * uniform_at(seed, offset_stream, 2 * octave);
-        const double shift_y = 256 * uniform_at(seed, offset_stream, 2 * octave + 1);
-        for (std::size_t i = 0; i < positions.size(); ++i) {
-            surface[i] += weight * noise(positions[i].x * frequency + shift_x, positions[i].y * frequency + shift_y);
-        }
-        weights += std::abs(weight);
-        weight *= fractal.persistence;
-        frequency *= fractal.lacunarity;
-    }
-    for (double& height : surface) height = amplitude_m * std::abs(height) / weights;
+    check_fractal(extent_m, fractal);
+    std::vector<double> surface = summed(PerlinNoise(seed), positions, extent_m, seed, NoiseVariant::fbm, fractal);
+    const double weight = total_weight(fractal);
+    for (double& height : surface) height = amplitude_m * std::abs(height) / weight;
     return surface;
 }
 

@@ -90,11 +90,11 @@ std::unique_ptr<OGRSpatialReference> wgs84() {
 std::vector<Point> transform(const OGRSpatialReference& from, const OGRSpatialReference& to,
                              const std::vector<Point>& points, const GdalGuard& gdal) {
     const std::unique_ptr<OGRCoordinateTransformation> change(OGRCreateCoordinateTransformation(&from, &to));
-    if (!change) throw Error("no local plane can be made here" + because(gdal));
+    if (!change) throw Error("there is no way from one coordinate system to the other" + because(gdal));
     std::vector<double> x, y;
     for (const Point& p : points) x.push_back(p.x), y.push_back(p.y);
     if (!points.empty() && !change->Transform(static_cast<int>(x.size()), x.data(), y.data())) {
-        throw Error("some points have no place on the local plane" + because(gdal));
+        throw Error("some points have no place in the other coordinate system" + because(gdal));
     }
     std::vector<Point> result(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) result[i] = {x[i], y[i]};
@@ -139,6 +139,21 @@ std::vector<Point> to_plane(const LocalPlane& plane, const std::vector<Point>& l
 std::vector<Point> from_plane(const LocalPlane& plane, const std::vector<Point>& metres) {
     const GdalGuard gdal;
     return transform(*plane_crs(plane), *wgs84(), metres, gdal);
+}
+
+std::vector<Point> reproject(const std::string& from_wkt, const std::string& to_wkt, const std::vector<Point>& points) {
+    const GdalGuard gdal;
+    const auto system = [&](const std::string& wkt) {
+        OGRSpatialReference crs;
+        if (crs.importFromWkt(wkt.c_str()) != OGRERR_NONE) {
+            throw Error("a coordinate system cannot be understood" + because(gdal));
+        }
+        crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+        return crs;
+    };
+    const OGRSpatialReference from = system(from_wkt), to = system(to_wkt);
+    if (from.IsSame(&to)) return points;
+    return transform(from, to, points, gdal);
 }
 
 double geodesic_area(const Polygon& lon_lat_deg) {

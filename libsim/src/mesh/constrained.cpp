@@ -32,10 +32,14 @@ std::vector<Vertex> insert_points(Delaunay& delaunay, const std::vector<Point>& 
     return outline;
 }
 
-void constrain_outline(Constrained& constrained, const std::vector<Vertex>& outline) {
+void constrain_rings(Constrained& constrained, const std::vector<Vertex>& outline, std::span<const Index> ring_start) {
     try {
-        for (std::size_t i = 0; i < outline.size(); ++i) {
-            constrained.insert_constraint(outline[i], outline[(i + 1) % outline.size()]);
+        for (std::size_t ring = 0; ring + 1 < ring_start.size(); ++ring) {
+            const Index first = ring_start[ring];
+            const Index last = ring_start[ring + 1] - 1;
+            for (Index i = first; i <= last; ++i) {
+                constrained.insert_constraint(outline[i], outline[i == last ? first : i + 1]);
+            }
         }
     } catch (const Constrained::Intersection_of_constraints_exception&) {
         throw Error("the points on the outline are not in order around it: the line through them crosses itself");
@@ -62,45 +66,63 @@ Vertex next_on_outline(const Constrained& constrained, Vertex from, Vertex here)
     }
 }
 
+/// The ring through given points first … last − 1, with what was added on it, in the given sense.
+Polygon walk_ring(const Constrained& constrained, const std::vector<Vertex>& vertices, Index first, Index last) {
+    std::vector<Index> walk;
+    Vertex from = nullptr;
+    Vertex here = vertices[first];
+    do {
+        walk.push_back(here->info().value);
+        const Vertex next = next_on_outline(constrained, from, here);
+        from = here;
+        here = next;
+    } while (here != vertices[first]);
+    // The first step may have gone either way round: the next of the given points tells which.
+    const auto second =
+        std::find_if(walk.begin() + 1, walk.end(), [&](Index number) { return number > first && number < last; });
+    if (*second != first + 1) std::reverse(walk.begin() + 1, walk.end());
+    Polygon ring;
+    for (const Index number : walk) ring.push_back({vertices[number]->point().x(), vertices[number]->point().y()});
+    return ring;
+}
+
 }  // namespace
 
-void triangulate_conforming(std::vector<Point>& points, Index outline_count, std::span<const Index> order,
+void triangulate_conforming(std::vector<Point>& points, std::span<const Index> ring_start, std::span<const Index> order,
                             Constrained& constrained) {
-    if (outline_count < 3 || outline_count > points.size()) {
+    const Index outline_count = ring_start.back();
+    for (std::size_t ring = 0; ring + 1 < ring_start.size(); ++ring) {
+        const Index count = ring_start[ring + 1] - ring_start[ring];
+        if (count >= 3 && outline_count <= points.size()) continue;
         throw Error(
-            fmt::format("{} of {} points lie on the outline, which needs 3 or more", outline_count, points.size()));
+            fmt::format("{} of {} points lie on a ring of the outline, which needs 3 or more", count, points.size()));
     }
     Delaunay delaunay;  // built without thought of constraints, which is faster, and then handed over
     const std::vector<Vertex> outline = insert_points(delaunay, points, outline_count, order);
     if (delaunay.dimension() < 2) throw Error("the mesh's points all lie on one line");
     constrained.tds().swap(delaunay.tds());
     constrained.set_infinite_vertex(delaunay.infinite_vertex());
-    constrain_outline(constrained, outline);
+    constrain_rings(constrained, outline, ring_start);
     CGAL::make_conforming_Gabriel_2(constrained);
     number_added_points(constrained, points);
 }
 
-std::vector<Point> conforming_ring(std::vector<Point> ring) {
-    const std::size_t given = ring.size();
-    Constrained constrained;
-    triangulate_conforming(ring, static_cast<Index>(given), hilbert_order(ring), constrained);
-    if (ring.size() == given) return ring;
-    std::vector<Vertex> vertices(ring.size());
-    for (const Vertex vertex : constrained.finite_vertex_handles()) vertices[vertex->info().value] = vertex;
-    std::vector<Index> walk;
-    Vertex from = nullptr;
-    Vertex here = vertices[0];
-    while (walk.size() < ring.size()) {
-        walk.push_back(here->info().value);
-        const Vertex next = next_on_outline(constrained, from, here);
-        from = here;
-        here = next;
+std::vector<Polygon> conforming_rings(const std::vector<Polygon>& rings) {
+    std::vector<Point> points;
+    std::vector<Index> ring_start{0};
+    for (const Polygon& ring : rings) {
+        points.insert(points.end(), ring.begin(), ring.end());
+        ring_start.push_back(static_cast<Index>(points.size()));
     }
-    // The first step may have gone either way round: the next of the given points tells which.
-    const auto second = std::find_if(walk.begin() + 1, walk.end(), [&](Index number) { return number < given; });
-    if (*second != 1) std::reverse(walk.begin() + 1, walk.end());
-    std::vector<Point> conforming;
-    for (const Index number : walk) conforming.push_back(ring[number]);
+    Constrained constrained;
+    triangulate_conforming(points, ring_start, hilbert_order(points), constrained);
+    if (points.size() == ring_start.back()) return rings;
+    std::vector<Vertex> vertices(points.size());
+    for (const Vertex vertex : constrained.finite_vertex_handles()) vertices[vertex->info().value] = vertex;
+    std::vector<Polygon> conforming;
+    for (std::size_t ring = 0; ring < rings.size(); ++ring) {
+        conforming.push_back(walk_ring(constrained, vertices, ring_start[ring], ring_start[ring + 1]));
+    }
     return conforming;
 }
 

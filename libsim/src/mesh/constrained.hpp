@@ -19,7 +19,7 @@ struct Number {
     Index value = none;  ///< place in the list of points that the vertices came from
 };
 struct Side {
-    bool outside = false;
+    int rings_crossed = -1;  ///< from infinity to the face; odd inside the domain, −1 if not yet known
 };
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -32,14 +32,14 @@ using Constrained =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure,
                                                CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
-/// Triangulates the points, inserted in the given order, with the ring through the first `outline_count` of them as
-/// constraint, and adds points on the ring until no vertex lies in the diametral disc of one of its edges (Gabriel).
-/// Numbers the vertices as `points` does and appends those added.
-/// Throws Error if two points coincide or the ring crosses itself.
-void triangulate_conforming(std::vector<Point>& points, Index outline_count, std::span<const Index> order,
+/// Triangulates the points, inserted in the given order, with rings through the first of them as constraints: ring r
+/// through the points ring_start[r] … ring_start[r + 1] − 1. Adds points on the rings until no vertex lies in the
+/// diametral disc of one of their edges (Gabriel). Numbers the vertices as `points` does and appends those added.
+/// Throws Error if two points coincide or the rings cross.
+void triangulate_conforming(std::vector<Point>& points, std::span<const Index> ring_start, std::span<const Index> order,
                             Constrained& constrained);
 
-/// The ring with the points that make its edges Gabriel by themselves. Throws as above.
-std::vector<Point> conforming_ring(std::vector<Point> ring);
+/// The rings with the points that make their edges Gabriel by themselves. Throws as above.
+std::vector<Polygon> conforming_rings(const std::vector<Polygon>& rings);
 
 }  // namespace thalweg::mesh

@@ -31,11 +31,14 @@ double x_at(const Point& a, const Point& b, double y) { return a.x + (y - a.y) *
 
 }  // namespace
 
-DiskGrid::DiskGrid(const Polygon& outline, double spacing_m)
-    : outline_(outline), spacing2_(spacing_m * spacing_m), side_(spacing_m / std::sqrt(2.0)) {
-    Point low = outline.front();
+DiskGrid::DiskGrid(const Rings& rings, double spacing_m)
+    : spacing2_(spacing_m * spacing_m), side_(spacing_m / std::sqrt(2.0)) {
+    for (const Polygon& ring : rings) {
+        for (std::size_t i = 0; i < ring.size(); ++i) sides_.push_back({ring[i], ring[(i + 1) % ring.size()]});
+    }
+    Point low = rings.front().front();
     Point high = low;
-    for (const Point& p : outline) {
+    for (const Point& p : rings.front()) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y)};
         high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     }
@@ -51,7 +54,7 @@ DiskGrid::DiskGrid(const Polygon& outline, double spacing_m)
     cell_.assign(std::size_t{rows_} * cols_, outside);
     list_sides_by_row();
     mark_inside();
-    for (std::size_t i = 0; i < outline_.size(); ++i) mark_crossed(i);
+    for (std::size_t i = 0; i < sides_.size(); ++i) mark_crossed(i);
 }
 
 Index DiskGrid::cell_of(const Point& p) const {
@@ -61,8 +64,8 @@ Index DiskGrid::cell_of(const Point& p) const {
 void DiskGrid::list_sides_by_row() {
     row_start_.assign(rows_ + 1, 0);
     const auto visit_rows = [&](auto visit) {
-        for (std::size_t i = 0; i < outline_.size(); ++i) {
-            const auto [low, high] = std::minmax(outline_[i].y, outline_[(i + 1) % outline_.size()].y);
+        for (std::size_t i = 0; i < sides_.size(); ++i) {
+            const auto [low, high] = std::minmax(sides_[i].from.y, sides_[i].to.y);
             for (Index row = row_of(low); row <= row_of(high); ++row) visit(row, static_cast<Index>(i));
         }
     };
@@ -80,8 +83,7 @@ void DiskGrid::mark_inside() {
         const double y = low_.y + (row + 0.5) * side_;
         crossings.clear();
         for (Index at = row_start_[row]; at < row_start_[row + 1]; ++at) {
-            const Point& a = outline_[row_side_[at]];
-            const Point& b = outline_[(row_side_[at] + 1) % outline_.size()];
+            const auto& [a, b] = sides_[row_side_[at]];
             if ((a.y <= y) != (b.y <= y)) crossings.push_back((x_at(a, b, y) - low_.x) / side_ - 0.5);
         }
         std::sort(crossings.begin(), crossings.end());
@@ -96,8 +98,8 @@ void DiskGrid::mark_inside() {
 
 /// Marks the cells that a side passes through (a hair more where it follows a border between cells).
 void DiskGrid::mark_crossed(std::size_t side) {
-    const auto [a, b] = std::minmax(outline_[side], outline_[(side + 1) % outline_.size()],
-                                    [](const Point& p, const Point& q) { return p.y < q.y; });
+    const auto [a, b] =
+        std::minmax(sides_[side].from, sides_[side].to, [](const Point& p, const Point& q) { return p.y < q.y; });
     constexpr double hair = 1e-9;
     for (Index row = row_of(a.y - hair * side_); row <= row_of(b.y + hair * side_); ++row) {
         const double bottom = std::max(a.y, low_.y + row * side_);
@@ -149,8 +151,7 @@ bool DiskGrid::is_inside(const Point& place) const {
     const Index row = row_of(place.y);
     bool odd = false;
     for (Index at = row_start_[row]; at < row_start_[row + 1]; ++at) {
-        const Point& a = outline_[row_side_[at]];
-        const Point& b = outline_[(row_side_[at] + 1) % outline_.size()];
+        const auto& [a, b] = sides_[row_side_[at]];
         if ((a.y <= place.y) != (b.y <= place.y) && x_at(a, b, place.y) <= place.x) odd = !odd;
     }
     return odd;

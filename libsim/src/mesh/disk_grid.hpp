@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/outline.hpp"
 #include "thalweg/core/index.hpp"
 #include "thalweg/core/point.hpp"
 
@@ -15,7 +16,7 @@ namespace thalweg::mesh {
 class DiskGrid {
   public:
     /// Throws Error if the spacing is too fine for 32-bit cell numbers.
-    DiskGrid(const Polygon& outline, double spacing_m);
+    DiskGrid(const Rings& rings, double spacing_m);
 
     /// Once, before any other point is added.
     void add_outline(const std::vector<Point>& outline_points);
@@ -48,7 +49,10 @@ class DiskGrid {
     void list_sides_by_row();
     bool crowded(Index cell, const Point& candidate) const;
 
-    Polygon outline_;
+    struct Side {
+        Point from, to;
+    };
+    std::vector<Side> sides_;
     double spacing2_;
     double side_;
     Point low_;

@@ -17,10 +17,56 @@ namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
-bool is_simple(const Polygon& outline) {
+std::vector<Kernel::Point_2> corners_of(const Polygon& ring) {
     std::vector<Kernel::Point_2> corners;
-    for (const Point& p : outline) corners.emplace_back(p.x, p.y);
+    for (const Point& p : ring) corners.emplace_back(p.x, p.y);
+    return corners;
+}
+
+bool is_simple(const Polygon& outline) {
+    const auto corners = corners_of(outline);
     return CGAL::is_simple_2(corners.begin(), corners.end(), Kernel());
+}
+
+struct Side {
+    Kernel::Segment_2 segment;
+    double west, east, south, north;
+    std::size_t ring;
+};
+
+std::vector<Side> sides_from_west_to_east(const Rings& rings) {
+    std::vector<Side> sides;
+    for (std::size_t ring = 0; ring < rings.size(); ++ring) {
+        const auto corners = corners_of(rings[ring]);
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const auto& a = corners[i];
+            const auto& b = corners[(i + 1) % corners.size()];
+            sides.push_back({Kernel::Segment_2(a, b), std::min(a.x(), b.x()), std::max(a.x(), b.x()),
+                             std::min(a.y(), b.y()), std::max(a.y(), b.y()), ring});
+        }
+    }
+    std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.west < b.west; });
+    return sides;
+}
+
+/// Whether sides of different rings have a point in common; exact. A sweep over the sides by their western ends.
+bool rings_touch(const Rings& rings) {
+    const std::vector<Side> sides = sides_from_west_to_east(rings);
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+        for (std::size_t j = i + 1; j < sides.size() && sides[j].west <= sides[i].east; ++j) {
+            if (sides[i].ring == sides[j].ring) continue;
+            if (sides[i].north < sides[j].south || sides[j].north < sides[i].south) continue;
+            if (CGAL::do_intersect(sides[i].segment, sides[j].segment)) return true;
+        }
+    }
+    return false;
+}
+
+/// Whether the first corner of one ring, and so all of it, lies inside another.
+bool lies_inside(const Polygon& ring, const Polygon& other) {
+    const auto corners = corners_of(other);
+    const Kernel::Point_2 first(ring[0].x, ring[0].y);
+    return CGAL::bounded_side_2(corners.begin(), corners.end(), first, Kernel()) == CGAL::ON_BOUNDED_SIDE;
 }
 
 }  // namespace
@@ -50,6 +96,29 @@ Polygon checked_outline(const Polygon& outline) {
     Polygon checked = outline;
     if (area < 0) std::reverse(checked.begin(), checked.end());
     return checked;
+}
+
+Rings checked_rings(const PolygonPart& domain) {
+    Rings rings{checked_outline(domain.outer)};
+    for (const Polygon& hole : domain.holes) {
+        rings.push_back(checked_outline(hole));
+        std::reverse(rings.back().begin(), rings.back().end());
+    }
+    if (rings_touch(rings)) {
+        throw Error(
+            "two rings of the outline touch or cross: a hole must lie apart from the outer ring and the others");
+    }
+    for (std::size_t hole = 1; hole < rings.size(); ++hole) {
+        bool misplaced = !lies_inside(rings[hole], rings[0]);
+        for (std::size_t other = 1; other < rings.size(); ++other) {
+            misplaced = misplaced || (other != hole && lies_inside(rings[hole], rings[other]));
+        }
+        if (misplaced) {
+            throw Error(fmt::format("the hole at ({}, {}) lies outside the outline or inside another hole",
+                                    rings[hole][0].x, rings[hole][0].y));
+        }
+    }
+    return rings;
 }
 
 }  // namespace thalweg::mesh

@@ -179,6 +179,7 @@ class Reader {
     }
 
     void read(const Field& field, const toml::node& node, std::vector<double>& member) const {
+        if (field.key != "domain.size_m") return read_numbers(field, node, member);
         const toml::array* array = node.as_array();
         if (array == nullptr || array->size() != 2) {
             throw Error(fmt::format("{} must be two numbers in brackets, not {}", field.key, quoted(node)));
@@ -186,6 +187,45 @@ class Reader {
         member.assign(2, 0.0);
         read(field, (*array)[0], member[0]);
         read(field, (*array)[1], member[1]);
+    }
+
+    void read(const Field& field, const toml::node& node, std::vector<std::filesystem::path>& member) const {
+        const toml::array* array = node.as_array();
+        member.assign(array == nullptr ? 1 : array->size(), {});
+        for (std::size_t i = 0; i < member.size(); ++i) read(field, array == nullptr ? node : (*array)[i], member[i]);
+    }
+
+    /// One number, or as many as there are; `domain.size_m` is a pair.
+    void read_numbers(const Field& field, const toml::node& node, std::vector<double>& member) const {
+        const toml::array* array = node.as_array();
+        member.assign(array == nullptr ? 1 : array->size(), 0.0);
+        for (std::size_t i = 0; i < member.size(); ++i) read(field, array == nullptr ? node : (*array)[i], member[i]);
+    }
+
+    void read(const Field& field, const toml::node& node, Outlets& member) const {
+        member = {};
+        const toml::table* table = node.as_table();
+        const toml::array* array = node.as_array();
+        if (table != nullptr && table->size() == 1 && table->contains("uplift_below")) {
+            member.rule = OutletRule::uplift_below;
+            const Field share{"outlets.uplift_below", "", "", 0, std::numeric_limits<double>::infinity(), true};
+            return read(share, *table->get("uplift_below"), member.uplift_below);
+        }
+        const auto word = node.value<std::string>();
+        if (word == "all") return;
+        if (word == "dem") {
+            member.rule = OutletRule::dem;
+            return;
+        }
+        if (table != nullptr || (array != nullptr && array->empty()) || (array == nullptr && !word)) {
+            throw Error(
+                fmt::format("{} must be \"all\", \"dem\", a list of sides such as [\"north\", \"southeast\"] or "
+                            "{{ uplift_below = 0.33 }}, not {}",
+                            field.key, quoted(node)));
+        }
+        member.rule = OutletRule::sides;
+        member.sides.assign(word ? 1 : array->size(), Side::north);
+        for (std::size_t i = 0; i < member.sides.size(); ++i) read(field, word ? node : (*array)[i], member.sides[i]);
     }
 
     const toml::table& table_;
@@ -228,10 +268,35 @@ std::string shown(const std::filesystem::path& path) { return shown(path.lexical
 std::string shown(const std::array<double, 4>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 std::string shown(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
 std::string shown(bool value) { return value ? "true" : "false"; }
+std::string shown(const std::vector<std::filesystem::path>& paths) {
+    std::string text;
+    for (const auto& path : paths) text += (text.empty() ? "" : ", ") + shown(path);
+    return fmt::format("[{}]", text);
+}
 template <class Whole>
 requires std::is_unsigned_v<Whole> std::string shown(Whole value) { return fmt::format("{}", value); }
 template <class E>
 requires std::is_enum_v<E> std::string shown(E value) { return fmt::format("\"{}\"", word_of(value)); }
+std::string shown(const Outlets& outlets) {
+    switch (outlets.rule) {
+        case OutletRule::all:
+            return "\"all\"";
+        case OutletRule::dem:
+            return "\"dem\"";
+        case OutletRule::uplift_below:
+            return fmt::format("{{ uplift_below = {} }}", outlets.uplift_below);
+        case OutletRule::sides:
+            break;
+    }
+    std::string text;
+    for (const Side side : outlets.sides) text += (text.empty() ? "" : ", ") + shown(side);
+    return fmt::format("[{}]", text);
+}
+
+template <class T>
+struct is_vector : std::false_type {};
+template <class T>
+struct is_vector<std::vector<T>> : std::true_type {};
 
 }  // namespace
 
@@ -239,8 +304,23 @@ const Words<MeshKind>& words(MeshKind) {
     static const Words<MeshKind> all{{"tin", MeshKind::tin}, {"raster", MeshKind::raster}};
     return all;
 }
-const Words<OutletRule>& words(OutletRule) {
-    static const Words<OutletRule> all{{"all", OutletRule::all}, {"dem", OutletRule::dem}};
+const Words<Side>& words(Side) {
+    static const Words<Side> all{
+        {"north", Side::north}, {"northeast", Side::northeast}, {"east", Side::east}, {"southeast", Side::southeast},
+        {"south", Side::south}, {"southwest", Side::southwest}, {"west", Side::west}, {"northwest", Side::northwest}};
+    return all;
+}
+const Words<mesh::PointPattern>& words(mesh::PointPattern) {
+    static const Words<mesh::PointPattern> all{{"poisson", mesh::PointPattern::poisson},
+                                               {"hexagonal", mesh::PointPattern::hexagonal},
+                                               {"regular", mesh::PointPattern::regular}};
+    return all;
+}
+const Words<evolve::NoiseVariant>& words(evolve::NoiseVariant) {
+    static const Words<evolve::NoiseVariant> all{{"fbm", evolve::NoiseVariant::fbm},
+                                                 {"billow", evolve::NoiseVariant::billow},
+                                                 {"ridge", evolve::NoiseVariant::ridge},
+                                                 {"warped", evolve::NoiseVariant::warped}};
     return all;
 }
 const Words<NoiseKind>& words(NoiseKind) {
@@ -277,8 +357,10 @@ const Words<FitMethod>& words(FitMethod) {
     return all;
 }
 const Words<evolve::Pattern>& words(evolve::Pattern) {
-    static const Words<evolve::Pattern> all{{"constant", evolve::Pattern::constant},
-                                            {"radial", evolve::Pattern::radial}};
+    static const Words<evolve::Pattern> all{
+        {"constant", evolve::Pattern::constant}, {"gradient", evolve::Pattern::gradient},
+        {"stepped", evolve::Pattern::stepped},   {"diamond", evolve::Pattern::diamond},
+        {"radial", evolve::Pattern::radial},     {"noise", evolve::Pattern::noise}};
     return all;
 }
 const Words<terrain::Receiver>& words(terrain::Receiver) {
@@ -325,7 +407,7 @@ std::string to_toml(const Experiment& experiment) {
         using T = std::remove_cvref_t<decltype(member)>;
         if constexpr (is_optional<T>::value) {
             if (member) line(field, shown(*member));
-        } else if constexpr (std::is_same_v<T, std::vector<double>> || std::is_same_v<T, std::string>) {
+        } else if constexpr (is_vector<T>::value || std::is_same_v<T, std::string>) {
             if (!member.empty()) line(field, shown(member));
         } else {
             line(field, shown(member));

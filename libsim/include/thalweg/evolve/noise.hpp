@@ -34,6 +34,18 @@ struct Fractal {
     double scale = 40;
 };
 
+enum class NoiseVariant {
+    fbm,     ///< the sum itself, −1 … 1
+    billow,  ///< of absolute values, 0 … 1: rounded hills between creases
+    ridge,   ///< of 1 − absolute values, 0 … 1: crests
+    warped   ///< fBm at places that two other fBm have moved by up to two lattice cells along x and y
+};
+
+/// The variant at every position. Throws Error unless extent_m and the scale are positive and there is at least one
+/// octave.
+std::vector<double> fractal_noise(std::span<const Point> positions, double extent_m, std::uint64_t seed, NoiseVariant,
+                                  const Fractal&);
+
 /// amplitude·|fBm| at every position: the initial surface of a simulation (m). Throws Error unless extent_m is positive
 /// and there is at least one octave.
 std::vector<double> perlin_surface(std::span<const Point> positions, double extent_m, double amplitude_m,

@@ -23,6 +23,10 @@ struct LocalPlane {
 std::vector<Point> to_plane(const LocalPlane&, const std::vector<Point>& lon_lat_deg);
 std::vector<Point> from_plane(const LocalPlane&, const std::vector<Point>& metres);
 
+/// Coordinates of one system in another, easting or longitude first in both. Throws Error where a system cannot be
+/// understood, or points have no place in the other.
+std::vector<Point> reproject(const std::string& from_wkt, const std::string& to_wkt, const std::vector<Point>&);
+
 /// Area (m²) of a ring of longitudes and latitudes on the WGS 84 ellipsoid, edges being geodesics.
 double geodesic_area(const Polygon& lon_lat_deg);
 

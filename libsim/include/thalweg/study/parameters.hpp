@@ -12,13 +12,16 @@
 #include <vector>
 
 #include "thalweg/core/index.hpp"
-#include "thalweg/evolve/uplift.hpp"
+#include "thalweg/evolve/tectonics.hpp"
+#include "thalweg/mesh/points.hpp"
 #include "thalweg/terrain/route.hpp"
 
 namespace thalweg::study {
 
 enum class MeshKind { tin, raster };
-enum class OutletRule { all, dem };
+enum class OutletRule { all, dem, sides, uplift_below };
+/// Where the rim looks to: eight sectors of 45°, the first about north, clockwise.
+enum class Side { north, northeast, east, southeast, south, southwest, west, northwest };
 enum class NoiseKind { perlin, uniform };
 enum class InitialSurface { noise, dem };
 enum class Solver { implicit, steady };
@@ -28,11 +31,33 @@ enum class HeightmapFile { png };
 enum class MeshFile { obj, ply };
 enum class FitMethod { slope_area };
 
+/// Which nodes of the rim are outlets.
+struct Outlets {
+    OutletRule rule = OutletRule::all;
+    std::vector<Side> sides = {};  ///< of `sides`
+    double uplift_below = 0;       ///< of `uplift_below`: share of the largest uplift
+
+    friend bool operator==(const Outlets&, const Outlets&) = default;
+};
+
+/// How something varies over the domain: the product of a pattern, an image and painted lines, each from 0 to 1.
+struct Variation {
+    evolve::Pattern pattern = evolve::Pattern::constant;
+    double direction_deg = 0;
+    Index steps = 4;
+    evolve::NoiseVariant noise = evolve::NoiseVariant::fbm;
+    double noise_scale = 4;
+    std::optional<std::filesystem::path> field;
+    std::vector<std::filesystem::path> lines;
+    std::vector<double> lines_width_m;  ///< one for all files of lines, or one for each
+    std::vector<double> lines_value;    ///< likewise
+};
+
 /// Everything an experiment file can say, with the defaults for what it does not say. Each member is described once, in
 /// `describe` below: reading, overriding, writing, `--help` and the reference page all follow from there.
 struct Experiment {
     std::uint64_t seed = 1;
-    std::optional<OutletRule> outlets;  ///< default: `dem` where the domain is a DEM's basin, else `all`
+    std::optional<Outlets> outlets;  ///< default: `dem` where the domain is a DEM's basin, else `all`
     struct {
         std::vector<double> size_m;
         std::optional<Index> nodes;
@@ -40,20 +65,27 @@ struct Experiment {
         std::optional<MeshKind> mesh;  ///< default: TIN; in a study, the DEM's own raster
         std::optional<std::filesystem::path> dem;
         InitialSurface initial = InitialSurface::noise;
+        std::optional<std::filesystem::path> outline;
+        std::optional<mesh::PointPattern> points;  ///< of a TIN; default: Poisson disks
     } domain;
-    struct {
+    struct : Variation {
         double rate_m_per_yr = 1e-3;
-        evolve::Pattern pattern = evolve::Pattern::constant;
     } uplift;
+    struct : Variation {
+        double maximum = 1;
+    } rainfall;
     struct {
         std::optional<double> k;
         std::optional<double> m;
         double n = 1;
         terrain::Receiver receiver = terrain::Receiver::steepest;
+        std::optional<std::filesystem::path> k_field;
     } river;
     struct {
         NoiseKind noise = NoiseKind::perlin;
         double amplitude_m = 0.01;
+        double constant_m = 0;
+        std::optional<std::filesystem::path> elevation;
     } initial;
     struct {
         std::optional<double> talus_angle_deg;
@@ -104,7 +136,9 @@ struct Field {
 template <class E>
 using Words = std::vector<std::pair<std::string_view, E>>;
 const Words<MeshKind>& words(MeshKind);
-const Words<OutletRule>& words(OutletRule);
+const Words<Side>& words(Side);
+const Words<mesh::PointPattern>& words(mesh::PointPattern);
+const Words<evolve::NoiseVariant>& words(evolve::NoiseVariant);
 const Words<NoiseKind>& words(NoiseKind);
 const Words<InitialSurface>& words(InitialSurface);
 const Words<Solver>& words(Solver);
@@ -116,38 +150,81 @@ const Words<FitMethod>& words(FitMethod);
 const Words<evolve::Pattern>& words(evolve::Pattern);
 const Words<terrain::Receiver>& words(terrain::Receiver);
 
+/// The keys of a variation, in one table or the other.
+struct VariationKeys {
+    std::string_view pattern, direction_deg, steps, noise, noise_scale, field, lines, lines_width_m, lines_value;
+};
+
+template <class AnyVariation, class Visit>
+void describe_variation(const VariationKeys& keys, AnyVariation& v, Visit& visit) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    visit(Field{keys.pattern, "", "its shape over the domain"}, v.pattern);
+    visit(Field{keys.direction_deg, "degrees", "where a gradient or steps rise to, clockwise from north", -360, 360},
+          v.direction_deg);
+    visit(Field{keys.steps, "", "number of steps", 1, 10000}, v.steps);
+    visit(Field{keys.noise, "", "kind of noise"}, v.noise);
+    visit(Field{keys.noise_scale, "", "hills of the noise along the longer side", 0, 10000, true}, v.noise_scale);
+    visit(Field{keys.field, "", "image or map that multiplies the shape, scaled to a largest value of 1"}, v.field);
+    visit(Field{keys.lines, "", "vector file of rivers or ridges to be painted, or a list of files"}, v.lines);
+    visit(
+        Field{keys.lines_width_m, "m", "width of the painted corridors, for all files or one each", 0, infinity, true},
+        v.lines_width_m);
+    visit(Field{keys.lines_value, "", "value on the lines relative to elsewhere, for all files or one each", 0, 1e6},
+          v.lines_value);
+}
+
 /// Calls visit(field, member) for every parameter, in the order of the file.
 template <class AnyExperiment, class Visit>
 void describe(AnyExperiment& e, Visit visit) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     visit(Field{"seed", "", "seed of everything random", 0}, e.seed);
-    visit(Field{"outlets", "",
-                "where water leaves: the whole rim, or the outlet of the DEM's basin (default where there is a DEM)"},
-          e.outlets);
-    visit(Field{"domain.size_m", "m", "width and height of a rectangle; simulate needs this or domain.dem", 0, infinity,
-                true},
-          e.domain.size_m);
+    visit(
+        Field{"outlets", "",
+              "where water leaves: \"all\" of the rim (default), \"dem\" for the outlet of the DEM's basin (default "
+              "where "
+              "there is a DEM), a list of sides (\"north\", \"northeast\", …), or { uplift_below = 0.33 } for the rim "
+              "where uplift is under that share of its largest value"},
+        e.outlets);
+    visit(
+        Field{"domain.size_m", "m",
+              "width and height of a rectangle; simulate needs this, domain.outline or domain.dem", 0, infinity, true},
+        e.domain.size_m);
     visit(Field{"domain.nodes", "",
-                "number of nodes (a TIN meets it within 2 %); a rectangle needs this or domain.spacing_m", 16,
-                2147483647},
+                "number of nodes, met within 2 %; needed, or domain.spacing_m, unless there is a DEM", 16, 2147483647},
           e.domain.nodes);
     visit(Field{"domain.spacing_m", "m", "distance of nodes, instead of their number", 0, infinity, true},
           e.domain.spacing_m);
-    visit(Field{"domain.mesh", "",
-                "Poisson-disk points and their Delaunay triangles (default), or square cells (default of a study)"},
-          e.domain.mesh);
+    visit(
+        Field{"domain.mesh", "", "points and their Delaunay triangles (default), or square cells (default of a study)"},
+        e.domain.mesh);
+    visit(Field{"domain.points", "", "how a TIN's points are placed; default \"poisson\", at random"}, e.domain.points);
+    visit(Field{"domain.outline", "", "vector file with the polygon that is the domain, instead of a rectangle"},
+          e.domain.outline);
     visit(Field{"domain.dem", "", "DEM whose largest complete basin is the domain, instead of a rectangle"},
           e.domain.dem);
     visit(Field{"domain.initial", "", "start from noise, or from the DEM's own heights"}, e.domain.initial);
     visit(Field{"uplift.rate_m_per_yr", "m/yr", "largest uplift rate", 0}, e.uplift.rate_m_per_yr);
-    visit(Field{"uplift.pattern", "", "shape of the uplift over the domain"}, e.uplift.pattern);
+    describe_variation({"uplift.pattern", "uplift.direction_deg", "uplift.steps", "uplift.noise", "uplift.noise_scale",
+                        "uplift.field", "uplift.lines", "uplift.lines_width_m", "uplift.lines_value"},
+                       e.uplift, visit);
+    visit(Field{"rainfall.maximum", "", "largest relative rainfall", 0}, e.rainfall.maximum);
+    describe_variation(
+        {"rainfall.pattern", "rainfall.direction_deg", "rainfall.steps", "rainfall.noise", "rainfall.noise_scale",
+         "rainfall.field", "rainfall.lines", "rainfall.lines_width_m", "rainfall.lines_value"},
+        e.rainfall, visit);
     visit(Field{"river.k", "m^(1-2m)/yr", "erodibility; simulate needs it, a study fits it", 0, infinity, true},
           e.river.k);
     visit(Field{"river.m", "", "exponent of the drainage area; simulate needs it, a study fits it", 0, 5}, e.river.m);
     visit(Field{"river.n", "", "exponent of the slope", 0.3, 5}, e.river.n);
     visit(Field{"river.receiver", "", "neighbour that takes the water"}, e.river.receiver);
+    visit(Field{"river.k_field", "", "image or map of the erodibility, scaled so that its largest value is river.k"},
+          e.river.k_field);
     visit(Field{"initial.noise", "", "roughness of the initial surface"}, e.initial.noise);
     visit(Field{"initial.amplitude_m", "m", "height of that roughness", 0}, e.initial.amplitude_m);
+    visit(Field{"initial.constant_m", "m", "height of the land above base level beneath that roughness"},
+          e.initial.constant_m);
+    visit(Field{"initial.elevation", "", "image or map of the initial heights (m), instead of constant and roughness"},
+          e.initial.elevation);
     visit(Field{"hillslope.talus_angle_deg", "degrees", "steepest stable slope; absent: no limit", 0, 90, true},
           e.hillslope.talus_angle_deg);
     visit(Field{"time.solver", "", "implicit time stepping, or the steady state directly"}, e.time.solver);
