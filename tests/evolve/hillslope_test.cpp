@@ -10,6 +10,7 @@
 #include "support/settings.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/parallel.hpp"
+#include "thalweg/evolve/simulate.hpp"
 
 using namespace thalweg;
 using namespace thalweg::evolve;
@@ -375,4 +376,67 @@ TEST_CASE("Without diffusivity nothing happens, and numbers without meaning are 
     CHECK_THROWS_AS(diffuse(grid, {.diffusivity_m2_per_yr = 1}, setting, 0, landscape), Error);
     landscape.elevation_m.pop_back();
     CHECK_THROWS_AS(diffuse(grid, {.diffusivity_m2_per_yr = 1}, setting, 1, landscape), Error);
+}
+
+TEST_CASE("A run with rivers and creep is its processes one by one, and its mass balance closes") {
+    const Mesh mesh = support::lattice_mesh(20, 20, 100, 0.2, 1);
+    const Grid grid = plane_grid(20, 22, 100, 80);
+    const auto check = [](const auto& topology, const Model& model) {
+        const Setting setting = support::island(topology, 1e-3);
+        Landscape run = support::rough_start(setting, 5, 1);
+        Landscape by_hand = run;
+        const SimulationResult result =
+            simulate(topology, model, setting, {.step_yr = 2e4, .max_steps = 12, .convergence = 0}, run);
+        MassBalance mass;
+        double change = 0;
+        for (int i = 0; i < 12; ++i) {
+            const Heights before = by_hand.elevation_m;
+            const Drainage drainage = drain(topology, by_hand, setting, model.river.receiver);
+            mass.eroded_m3 += erode(topology, drainage, model.river, setting, 2e4, by_hand).mass.eroded_m3;
+            mass.diffused_m3 += diffuse(topology, model.hillslope, setting, 2e4, by_hand).diffused_m3;
+            change = 0;
+            for (Index node = 0; node < topology.size(); ++node) {
+                change = std::max(change, std::abs(by_hand.elevation_m[node] - before[node]));
+            }
+        }
+        CHECK(run.elevation_m == by_hand.elevation_m);
+        CHECK(result.mass.eroded_m3 == Approx(mass.eroded_m3).epsilon(1e-12));
+        CHECK(result.mass.diffused_m3 == Approx(mass.diffused_m3).epsilon(1e-12));
+        CHECK(result.mass.diffused_m3 > 0);
+        CHECK(result.mass.exported_m3 ==
+              Approx(result.mass.eroded_m3 + result.mass.talus_m3 + result.mass.diffused_m3).epsilon(1e-12));
+        CHECK(std::abs(result.mass.relative_residual()) < 1e-12);
+        CHECK(result.max_rate_m_per_yr == change / 2e4);
+        CHECK(result.largest_hillslope_iterations >= 1);
+        CHECK(result.unconverged_hillslope_steps == 0);
+    };
+    for (const double critical : {0.0, 0.4}) {
+        const Model model{.river = {.k = 1e-5, .m = 0.5, .n = 1.2, .talus_slope = 0.9},
+                          .hillslope = {.diffusivity_m2_per_yr = 0.05, .critical_slope = critical}};
+        check(mesh, model);
+        check(grid, model);
+    }
+}
+
+TEST_CASE("A ridge without rivers comes to rest on the parabola u(L² − x²)/(2D), in one long step or in many") {
+    // Rows of cells between two walls of base level at x = ±L: on the nodes the parabola is exact.
+    const double spacing = 10, length = 300, uplift = 1e-3, diffusivity = 0.02;
+    const Grid grid = plane_grid(5, 61, spacing, 25);
+    Setting setting = support::island(grid, uplift);
+    for (Index node = 0; node < grid.size(); ++node) {
+        const bool wall = grid.col(node) == 0 || grid.col(node) == 60;
+        setting.boundary[node] = wall ? Boundary::base_level : Boundary::interior;
+    }
+    const Model model{.river = {.k = 0}, .hillslope = {.diffusivity_m2_per_yr = diffusivity}};
+    for (const double dt_yr : {1e10, 1e6}) {
+        Landscape landscape = support::rough_start(setting, 1, 1);
+        const SimulationResult result =
+            simulate(grid, model, setting, {.step_yr = dt_yr, .max_steps = 3000, .convergence = 1e-9}, landscape);
+        CHECK(result.stop_reason == StopReason::converged);
+        for (Index node = 0; node < grid.size(); ++node) {
+            const double x = spacing * grid.col(node) - length;
+            const double exact = uplift * (length * length - x * x) / (2 * diffusivity);
+            CHECK(std::abs(landscape.elevation_m[node] - exact) < 1e-6 * exact + 1e-9);
+        }
+    }
 }

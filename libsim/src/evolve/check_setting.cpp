@@ -47,6 +47,18 @@ void check_river(const River& river) {
     }
 }
 
+void check_hillslope(const Hillslope& hillslope) {
+    const auto sound = [](double value) { return value >= 0 && std::isfinite(value); };
+    if (!sound(hillslope.diffusivity_m2_per_yr)) {
+        throw Error(
+            fmt::format("the hillslope diffusivity must be zero or more, not {}", hillslope.diffusivity_m2_per_yr));
+    }
+    if (!sound(hillslope.critical_slope)) {
+        throw Error(fmt::format("the critical slope must be positive, or zero for linear diffusion, not {}",
+                                hillslope.critical_slope));
+    }
+}
+
 void check_step(double dt_yr) {
     if (dt_yr > 0 && std::isfinite(dt_yr)) return;
     throw Error(fmt::format("the time step must be a positive number of years, not {}", dt_yr));

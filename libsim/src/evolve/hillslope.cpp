@@ -30,18 +30,6 @@ constexpr double room_to_start = 0.95;  // of the critical slope
 constexpr double raise = 1.5;           // of the slope that base level forces
 constexpr double no_limit = std::numeric_limits<double>::infinity();
 
-void check_hillslope(const Hillslope& hillslope) {
-    const auto sound = [](double value) { return value >= 0 && std::isfinite(value); };
-    if (!sound(hillslope.diffusivity_m2_per_yr)) {
-        throw Error(
-            fmt::format("the hillslope diffusivity must be zero or more, not {}", hillslope.diffusivity_m2_per_yr));
-    }
-    if (!sound(hillslope.critical_slope)) {
-        throw Error(fmt::format("the critical slope must be positive, or zero for linear diffusion, not {}",
-                                hillslope.critical_slope));
-    }
-}
-
 std::vector<Creep> creep_of(const std::vector<Boundary>& boundary, const std::vector<double>& elevation_m) {
     std::vector<Creep> creep(boundary.size(), Creep::moves);
     for (std::size_t node = 0; node < boundary.size(); ++node) {

@@ -20,8 +20,21 @@ evolve::River river_of(const Experiment& e) {
     return river;
 }
 
+evolve::Hillslope hillslope_of(const Experiment& e) {
+    const evolve::Hillslope hillslope{e.hillslope.diffusivity_m2_per_yr, e.hillslope.critical_slope};
+    if (hillslope.critical_slope > 0 && hillslope.diffusivity_m2_per_yr == 0) {
+        throw Error("hillslope.critical_slope has no effect without hillslope.diffusivity_m2_per_yr: give both");
+    }
+    if (hillslope.diffusivity_m2_per_yr > 0 && e.time.solver == Solver::steady) {
+        throw Error(
+            "hillslope.diffusivity_m2_per_yr needs time.solver = \"implicit\": the steady solver knows rivers and the "
+            "talus limit only");
+    }
+    return hillslope;
+}
+
 }  // namespace
 
-evolve::Model model_of(const Experiment& e) { return {.river = river_of(e)}; }
+evolve::Model model_of(const Experiment& e) { return {.river = river_of(e), .hillslope = hillslope_of(e)}; }
 
 }  // namespace thalweg::study

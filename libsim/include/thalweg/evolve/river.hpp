@@ -38,7 +38,8 @@ struct MassBalance {
     double uplifted_m3 = 0;  ///< Σ a·dt·u
     double eroded_m3 = 0;    ///< Σ a·dt·k·A^m·S^n at the slopes at the end of the step
     double talus_m3 = 0;     ///< what the talus limit took
-    double exported_m3 = 0;  ///< eroded + talus (− deposited): what left through the outlets
+    double diffused_m3 = 0;  ///< what hillslope diffusion carried into base-level nodes, net
+    double exported_m3 = 0;  ///< eroded + talus + diffused: what left through the outlets
     double stored_m3 = 0;    ///< Σ a·(h_end − h_start)
 
     /// (uplifted − exported − stored) / uplifted; over exported where nothing was uplifted; 0 where nothing moved.

@@ -30,8 +30,10 @@ struct SimulationState {
     bool converged = false;
     double max_rate_m_per_yr = 0, mean_rate_m_per_yr = 0;  ///< of the last step
     int largest_newton_iterations = 0;
-    MassBalance mass;   ///< of all steps
-    bool calm = false;  ///< the last step moved no more than convergence asks for
+    int largest_hillslope_iterations = 0;   ///< Newton iterations of a step of nonlinear creep
+    Index unconverged_hillslope_steps = 0;  ///< steps of creep that used up their iterations
+    MassBalance mass;                       ///< of all steps
+    bool calm = false;                      ///< the last step moved no more than convergence asks for
     ExchangeWatch exchange;
     Slackening slackening;
 };
@@ -62,11 +64,14 @@ struct SimulationResult {
     Index lakes_final = 0;
     MassBalance mass;
     int largest_newton_iterations = 0;
+    int largest_hillslope_iterations = 0;
+    Index unconverged_hillslope_steps = 0;
 };
 
 using Observer = std::function<void(const StepRecord&, const SimulationState&)>;
 
-/// Steps until the landscape is steady or the steps are used up.
+/// Steps until the landscape is steady or the steps are used up. The processes of a step follow one another (first
+/// order in time), in the order of `Model`: uplift with river incision and the talus limit in one sweep, then creep.
 ///
 /// Steady: the mean rate Σa·|Δh|/dt is at most `convergence` times Σa·u, and the new heights drain the same way as
 /// those before the step (or the rate stays as low for one step more), so that no receiver that changes at the very end
