@@ -10,6 +10,7 @@
 #include "evolve/divided_erosion.hpp"
 #include "evolve/drainage.hpp"
 #include "evolve/erosion.hpp"
+#include "evolve/sediment_step.hpp"
 
 namespace thalweg::evolve {
 namespace {
@@ -37,6 +38,7 @@ void add(MassBalance& total, const MassBalance& step) {
     total.eroded_m3 += step.eroded_m3;
     total.talus_m3 += step.talus_m3;
     total.diffused_m3 += step.diffused_m3;
+    total.deposited_m3 += step.deposited_m3;
     total.exported_m3 += step.exported_m3;
     total.stored_m3 += step.stored_m3;
 }
@@ -53,6 +55,7 @@ struct Run {
     DrainBuffers buffers = {};
     std::optional<HillslopeSolver> creep = {};
     std::vector<double> before_m = {};  // heights before the step; only with creep
+    SedimentBuffers sediment = {};      // only with deposition
 };
 
 template <Topology T>
@@ -121,6 +124,10 @@ StepReport step(Run<T>& run, SimulationState& state) {
     if (run.creep) run.before_m = landscape.elevation_m;
     drain_into(run.topology, landscape, run.setting, river, state.exchange.frozen, run.drainage, run.buffers);
     const StepSums sums = with_edges(run.topology, [&](const auto& edges) {
+        if (river.g > 0) {
+            return erode_with_sediment(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr,
+                                       landscape, run.sediment);
+        }
         return dig(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr, landscape);
     });
     StepReport report = sums.report(run.options.step_yr);
@@ -129,6 +136,8 @@ StepReport step(Run<T>& run, SimulationState& state) {
     state.max_rate_m_per_yr = report.max_rate_m_per_yr;
     state.mean_rate_m_per_yr = report.mean_rate_m_per_yr;
     state.largest_newton_iterations = std::max(state.largest_newton_iterations, report.largest_newton_iterations);
+    state.largest_sediment_iterations = std::max(state.largest_sediment_iterations, report.sediment_iterations);
+    state.unconverged_sediment_steps += report.sediment_converged ? 0 : 1;
     add(state.mass, report.mass);
     if (run.options.convergence > 0) judge(run, moved_m3, sums.uplifted.value(), state);
     return report;
@@ -168,6 +177,8 @@ SimulationResult result_of(const Run<T>& run, const SimulationState& state) {
                             .frozen = frozen_mask(state.exchange),
                             .mass = state.mass,
                             .largest_newton_iterations = state.largest_newton_iterations,
+                            .largest_sediment_iterations = state.largest_sediment_iterations,
+                            .unconverged_sediment_steps = state.unconverged_sediment_steps,
                             .largest_hillslope_iterations = state.largest_hillslope_iterations,
                             .unconverged_hillslope_steps = state.unconverged_hillslope_steps};
     result.lakes_final = terrain::drain_lakes(run.topology, elevation_m, boundary, directions);

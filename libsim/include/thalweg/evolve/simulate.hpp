@@ -30,6 +30,8 @@ struct SimulationState {
     bool converged = false;
     double max_rate_m_per_yr = 0, mean_rate_m_per_yr = 0;  ///< of the last step
     int largest_newton_iterations = 0;
+    int largest_sediment_iterations = 0;    ///< of a step with deposition
+    Index unconverged_sediment_steps = 0;   ///< steps with deposition that used up their iterations
     int largest_hillslope_iterations = 0;   ///< Newton iterations of a step of nonlinear creep
     Index unconverged_hillslope_steps = 0;  ///< steps of creep that used up their iterations
     MassBalance mass;                       ///< of all steps
@@ -64,6 +66,8 @@ struct SimulationResult {
     Index lakes_final = 0;
     MassBalance mass;
     int largest_newton_iterations = 0;
+    int largest_sediment_iterations = 0;
+    Index unconverged_sediment_steps = 0;
     int largest_hillslope_iterations = 0;
     Index unconverged_hillslope_steps = 0;
 };
@@ -100,9 +104,12 @@ struct SteadyResult {
     std::vector<std::uint8_t> frozen;
 };
 
-/// Steady state directly: under fixed receivers every slope is min(talus, (u/(k·A^m))^(1/n)), integrated up the trees;
+/// Steady state directly: under fixed receivers every slope is min(talus, ((u + G·U/A)/(k·A^m))^(1/n)), U the uplift
+/// (m³/yr) of the node and everything upstream, integrated up the trees;
 /// re-routed until no receiver changes (those that cycle are kept after 20 repeats and counted). Where u > 0 and k·A^m
 /// is 0 the talus limit must be on, else Error.
+/// On ground that hardly rises below ground that rises fast, channels with sediment shift for ever: then `converged` is
+/// false or many receivers are frozen.
 SteadyResult solve_steady(const Grid&, const River&, const Setting&, Index max_sweeps, Landscape&);
 SteadyResult solve_steady(const Mesh&, const River&, const Setting&, Index max_sweeps, Landscape&);
 

@@ -61,6 +61,9 @@ struct Experiment {
         double critical_slope = 0;
     } hillslope;
     struct {
+        double g = 0;
+    } deposition;
+    struct {
         Solver solver = Solver::implicit;
         double step_yr = 100000;
         Index max_steps = 5000;
@@ -156,6 +159,7 @@ void describe(AnyExperiment& e, Visit visit) {
           e.hillslope.diffusivity_m2_per_yr);
     visit(Field{"hillslope.critical_slope", "m/m", "slope that creep cannot pass; 0: linear diffusion", 0},
           e.hillslope.critical_slope);
+    visit(Field{"deposition.g", "", "G: how readily rivers lay down what they carry; 0: never", 0}, e.deposition.g);
     visit(Field{"time.solver", "", "implicit time stepping, or the steady state directly"}, e.time.solver);
     visit(Field{"time.step_yr", "yr", "time step", 0, infinity, true}, e.time.step_yr);
     visit(Field{"time.max_steps", "", "most steps (or sweeps of the steady solver)", 1, 1e9}, e.time.max_steps);
