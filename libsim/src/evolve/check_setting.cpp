@@ -42,8 +42,26 @@ void check_river(const River& river) {
         throw Error(
             fmt::format("the exponent of multiple flow must be a positive number, not {}", river.flow_exponent));
     }
+    if (!finite_and_not_negative(river.g)) {
+        throw Error(fmt::format("the deposition coefficient G must be zero or more, not {}", river.g));
+    }
+    if (river.g > 0 && river.flow == Flow::multiple) {
+        throw Error("deposition (G > 0) follows one receiver per node: use single flow, or G = 0");
+    }
     if (!(river.talus_slope > 0)) {
         throw Error(fmt::format("the talus slope must be positive, not {}", river.talus_slope));
+    }
+}
+
+void check_hillslope(const Hillslope& hillslope) {
+    const auto sound = [](double value) { return value >= 0 && std::isfinite(value); };
+    if (!sound(hillslope.diffusivity_m2_per_yr)) {
+        throw Error(
+            fmt::format("the hillslope diffusivity must be zero or more, not {}", hillslope.diffusivity_m2_per_yr));
+    }
+    if (!sound(hillslope.critical_slope)) {
+        throw Error(fmt::format("the critical slope must be positive, or zero for linear diffusion, not {}",
+                                hillslope.critical_slope));
     }
 }
 

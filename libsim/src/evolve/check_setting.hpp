@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "thalweg/evolve/river.hpp"
+#include "thalweg/evolve/model.hpp"
 
 namespace thalweg::evolve {
 
@@ -10,6 +10,9 @@ void check_setting(Index nodes, const Landscape&, const Setting&);
 
 /// Throws Error unless k, m ≥ 0, n is in [0.3, 5] and the talus slope is positive.
 void check_river(const River&);
+
+/// Throws Error unless diffusivity and critical slope are zero or more.
+void check_hillslope(const Hillslope&);
 
 /// Throws Error unless the time step is a positive number.
 void check_step(double dt_yr);

@@ -194,13 +194,19 @@ class StepSums {
                 .mass = {.uplifted_m3 = uplifted.value(),
                          .eroded_m3 = incised.value(),
                          .talus_m3 = talus.value(),
-                         .exported_m3 = incised.value() + talus.value(),
-                         .stored_m3 = stored.value()}};
+                         .deposited_m3 = deposited.value(),
+                         .exported_m3 = incised.value() + talus.value() - deposited.value(),
+                         .stored_m3 = stored.value()},
+                .sediment_iterations = sediment_iterations,
+                .sediment_converged = sediment_converged};
     }
 
     CompensatedSum uplifted, incised, talus, stored;  ///< after `carry`
+    CompensatedSum deposited;                         ///< not by `add`: only rivers with sediment have it
     double area = 0;
     double moved = 0;
+    int sediment_iterations = 0;
+    bool sediment_converged = true;
 
   private:
     void count(int iterations) {

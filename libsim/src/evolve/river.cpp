@@ -5,6 +5,7 @@
 #include "evolve/divided_erosion.hpp"
 #include "evolve/drainage.hpp"
 #include "evolve/erosion.hpp"
+#include "evolve/sediment_step.hpp"
 
 namespace thalweg::evolve {
 namespace {
@@ -26,8 +27,11 @@ StepReport eroded(const T& topology, const Drainage& drainage, const River& rive
     check_setting(topology.size(), landscape, setting);
     check_river(river);
     check_step(dt_yr);
+    const SlopeSolver solve(river.n);
     return with_edges(topology, [&](const auto& edges) {
-        return dig(edges, drainage, river, SlopeSolver(river.n), setting, dt_yr, landscape).report(dt_yr);
+        if (river.g == 0) return dig(edges, drainage, river, solve, setting, dt_yr, landscape).report(dt_yr);
+        SedimentBuffers buffers;
+        return erode_with_sediment(edges, drainage, river, solve, setting, dt_yr, landscape, buffers).report(dt_yr);
     });
 }
 

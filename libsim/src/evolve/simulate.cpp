@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 
 #include "evolve/check_setting.hpp"
 #include "evolve/divided_erosion.hpp"
 #include "evolve/drainage.hpp"
 #include "evolve/erosion.hpp"
+#include "evolve/sediment_step.hpp"
 
 namespace thalweg::evolve {
 namespace {
@@ -35,6 +37,8 @@ void add(MassBalance& total, const MassBalance& step) {
     total.uplifted_m3 += step.uplifted_m3;
     total.eroded_m3 += step.eroded_m3;
     total.talus_m3 += step.talus_m3;
+    total.diffused_m3 += step.diffused_m3;
+    total.deposited_m3 += step.deposited_m3;
     total.exported_m3 += step.exported_m3;
     total.stored_m3 += step.stored_m3;
 }
@@ -49,7 +53,17 @@ struct Run {
     SlopeSolver solve;
     Drainage drainage = {};
     DrainBuffers buffers = {};
+    std::optional<HillslopeSolver> creep = {};
+    std::vector<double> before_m = {};  // heights before the step; only with creep
+    SedimentBuffers sediment = {};      // only with deposition
 };
+
+template <Topology T>
+Run<T> make_run(const T& topology, const Model& model, const Setting& setting, const TimeOptions& options) {
+    Run<T> run{topology, model, setting, options, SlopeSolver(model.river.n)};
+    if (model.hillslope.diffusivity_m2_per_yr > 0) run.creep.emplace(topology, model.hillslope, setting);
+    return run;
+}
 
 template <Topology T>
 bool drains_as_before(const Run<T>& run, const SimulationState& state) {
@@ -79,22 +93,53 @@ void judge(const Run<T>& run, double moved_m3, double uplifted_m3, SimulationSta
     }
 }
 
+/// Creep on what the rivers left. The rates become those of the whole step, from `before_m` on; returns the volume that
+/// moved.
+template <Topology T>
+double creep(Run<T>& run, SimulationState& state, StepReport& report) {
+    const HillslopeReport done = run.creep->step(run.options.step_yr, state.landscape);
+    state.largest_hillslope_iterations = std::max(state.largest_hillslope_iterations, done.newton_iterations);
+    state.unconverged_hillslope_steps += done.converged ? 0 : 1;
+    report.mass.diffused_m3 = done.diffused_m3;
+    report.mass.exported_m3 += done.diffused_m3;
+    report.mass.stored_m3 += done.stored_m3;
+    double moved = 0, area = 0, largest = 0;
+    for (const Index node : run.drainage.order) {
+        if (run.setting.boundary[node] == Boundary::base_level) continue;
+        const double change = std::abs(state.landscape.elevation_m[node] - run.before_m[node]);
+        area += run.topology.area(node);
+        moved += run.topology.area(node) * change;
+        largest = std::max(largest, change);
+    }
+    report.max_rate_m_per_yr = largest / run.options.step_yr;
+    report.mean_rate_m_per_yr = area > 0 ? moved / area / run.options.step_yr : 0;
+    return moved;
+}
+
 /// One step of the model: drain, then each process in turn.
 template <Topology T>
 StepReport step(Run<T>& run, SimulationState& state) {
     Landscape& landscape = state.landscape;
     const River& river = run.model.river;
+    if (run.creep) run.before_m = landscape.elevation_m;
     drain_into(run.topology, landscape, run.setting, river, state.exchange.frozen, run.drainage, run.buffers);
     const StepSums sums = with_edges(run.topology, [&](const auto& edges) {
+        if (river.g > 0) {
+            return erode_with_sediment(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr,
+                                       landscape, run.sediment);
+        }
         return dig(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr, landscape);
     });
-    const StepReport report = sums.report(run.options.step_yr);
+    StepReport report = sums.report(run.options.step_yr);
+    const double moved_m3 = run.creep ? creep(run, state, report) : sums.moved;
     ++state.steps;
     state.max_rate_m_per_yr = report.max_rate_m_per_yr;
     state.mean_rate_m_per_yr = report.mean_rate_m_per_yr;
     state.largest_newton_iterations = std::max(state.largest_newton_iterations, report.largest_newton_iterations);
+    state.largest_sediment_iterations = std::max(state.largest_sediment_iterations, report.sediment_iterations);
+    state.unconverged_sediment_steps += report.sediment_converged ? 0 : 1;
     add(state.mass, report.mass);
-    if (run.options.convergence > 0) judge(run, sums.moved, sums.uplifted.value(), state);
+    if (run.options.convergence > 0) judge(run, moved_m3, sums.uplifted.value(), state);
     return report;
 }
 
@@ -131,7 +176,11 @@ SimulationResult result_of(const Run<T>& run, const SimulationState& state) {
                             .frozen_receivers = frozen_count(state.exchange),
                             .frozen = frozen_mask(state.exchange),
                             .mass = state.mass,
-                            .largest_newton_iterations = state.largest_newton_iterations};
+                            .largest_newton_iterations = state.largest_newton_iterations,
+                            .largest_sediment_iterations = state.largest_sediment_iterations,
+                            .unconverged_sediment_steps = state.unconverged_sediment_steps,
+                            .largest_hillslope_iterations = state.largest_hillslope_iterations,
+                            .unconverged_hillslope_steps = state.unconverged_hillslope_steps};
     result.lakes_final = terrain::drain_lakes(run.topology, elevation_m, boundary, directions);
     return result;
 }
@@ -141,6 +190,7 @@ void check(const T& topology, const Model& model, const Setting& setting, const 
            const Landscape& landscape) {
     check_setting(topology.size(), landscape, setting);
     check_river(model.river);
+    check_hillslope(model.hillslope);
     check_step(options.step_yr);
 }
 
@@ -148,7 +198,7 @@ template <Topology T>
 SimulationResult continued(const T& topology, const Model& model, const Setting& setting, const TimeOptions& options,
                            SimulationState& state, const Observer& observer) {
     check(topology, model, setting, options, state.landscape);
-    Run<T> run{topology, model, setting, options, SlopeSolver(model.river.n)};
+    Run<T> run = make_run(topology, model, setting, options);
     while (state.steps < options.max_steps && !state.converged) {
         const auto start = Clock::now();
         step(run, state);

@@ -32,6 +32,15 @@ class SteadySlope {
         }
     }
 
+    /// With sediment: what the river must cut is the node's own uplift and what it lays down of all uplift upstream.
+    double loaded(const River& river, const Setting& setting, Index node, double area_m2, double load) const {
+        const double laid_down = area_m2 > 0 ? river.g * load / area_m2 : 0;
+        const double cut = setting.uplift_m_per_yr[node] + laid_down;
+        if (!(cut > 0)) return 0;
+        const double slope = std::pow(cut / erodibility(river, setting, node), 1 / river.n);
+        return std::min(talus_, slope / area_power(area_m2, area_exponent_));
+    }
+
     /// Infinite where a node rises and no water carries anything away.
     double operator()(Index node, double area_m2) const {
         if (slope_at_unit_area_[node] == 0) return 0;
@@ -54,6 +63,26 @@ void integrate(const Edges& edges, const Drainage& drainage, const SteadySlope& 
     }
 }
 
+/// The same with sediment: `load` becomes the uplift of every node and all upstream (m³/yr).
+template <class Edges>
+void integrate_loaded(const Edges& edges, const Drainage& drainage, const River& river, const Setting& setting,
+                      const SteadySlope& slope, std::vector<double>& load, Landscape& landscape) {
+    load.assign(landscape.elevation_m.size(), 0.0);
+    for (std::size_t at = drainage.order.size(); at-- > 0;) {
+        const Index node = drainage.order[at];
+        load[node] += edges.area(node) * setting.uplift_m_per_yr[node];
+        const Slot slot = drainage.directions[node];
+        if (slot != no_flow) load[edges.neighbor(node, slot)] += load[node];
+    }
+    for (const Index node : drainage.order) {
+        const Slot slot = drainage.directions[node];
+        if (slot == no_flow) continue;
+        const double rise = slope.loaded(river, setting, node, drainage.area_m2[node], load[node]);
+        landscape.elevation_m[node] =
+            landscape.elevation_m[edges.neighbor(node, slot)] + edges.length(node, slot) * rise;
+    }
+}
+
 /// Every node must have a finite steady slope whatever water it gets: rain on its own cell is the least.
 template <Topology T>
 void check_steady(const T& topology, const River& river, const Setting& setting) {
@@ -64,7 +93,8 @@ void check_steady(const T& topology, const River& river, const Setting& setting)
     }
     if (std::isfinite(river.talus_slope)) return;
     for (Index node = 0; node < topology.size(); ++node) {
-        if (setting.boundary[node] == Boundary::base_level || !(setting.uplift_m_per_yr[node] > 0)) continue;
+        if (setting.boundary[node] == Boundary::base_level) continue;
+        if (river.g == 0 && !(setting.uplift_m_per_yr[node] > 0)) continue;  // sediment passes everywhere
         const double erosion =
             erodibility(river, setting, node) * area_power(topology.area(node) * setting.rainfall[node], river.m);
         if (erosion > 0) continue;
@@ -85,6 +115,7 @@ SteadyResult solved(const T& topology, const River& river, const Setting& settin
     ExchangeWatch exchange = exchange_watch(topology.size(), patience);
     Drainage drainage;
     DrainBuffers buffers;
+    std::vector<double> load;
     SteadyResult result{.sweeps = 0, .converged = false, .frozen_receivers = 0, .frozen = {}};
     while (result.sweeps < max_sweeps) {
         drain_into(topology, landscape, setting, river, exchange.frozen, drainage, buffers);
@@ -92,7 +123,10 @@ SteadyResult solved(const T& topology, const River& river, const Setting& settin
         result.converged = result.sweeps > 0 && changes == 0;
         if (result.converged) break;
         if (only_the_same(exchange)) freeze(exchange);
-        with_edges(topology, [&](const auto& edges) { integrate(edges, drainage, slope, landscape); });
+        with_edges(topology, [&](const auto& edges) {
+            if (river.g == 0) return integrate(edges, drainage, slope, landscape);
+            integrate_loaded(edges, drainage, river, setting, slope, load, landscape);
+        });
         ++result.sweeps;
     }
     result.frozen_receivers = frozen_count(exchange);

@@ -50,6 +50,10 @@ Outcome step_through_time(const Topology& topology, const evolve::Model& model, 
     o.mean_rate_m_per_yr = r.mean_rate_m_per_yr;
     o.frozen_receivers = r.frozen_receivers;
     o.mass = r.mass;
+    o.largest_sediment_iterations = r.largest_sediment_iterations;
+    o.unconverged_sediment_steps = r.unconverged_sediment_steps;
+    o.largest_hillslope_iterations = r.largest_hillslope_iterations;
+    o.unconverged_hillslope_steps = r.unconverged_hillslope_steps;
     return o;
 }
 
@@ -99,10 +103,10 @@ Json mass_json(const Outcome& o, std::vector<std::string>& notes) {
         return empty;
     }
     const evolve::MassBalance& m = *o.mass;
-    return {{"uplifted_m3", m.uplifted_m3}, {"eroded_m3", m.eroded_m3},
-            {"talus_m3", m.talus_m3},       {"diffused_m3", 0.0},
-            {"deposited_m3", 0.0},          {"exported_m3", m.exported_m3},
-            {"stored_m3", m.stored_m3},     {"relative_residual", number(m.relative_residual())}};
+    return {{"uplifted_m3", m.uplifted_m3},   {"eroded_m3", m.eroded_m3},
+            {"talus_m3", m.talus_m3},         {"diffused_m3", m.diffused_m3},
+            {"deposited_m3", m.deposited_m3}, {"exported_m3", m.exported_m3},
+            {"stored_m3", m.stored_m3},       {"relative_residual", number(m.relative_residual())}};
 }
 
 TerrainInput input_of(const Domain& domain, const Finished& f) {
@@ -127,6 +131,13 @@ Json summary_json(const Domain& domain, const Outcome& o, const Finished& f, con
     notes.push_back("input: a simulated terrain is no file and has no checksum");
     notes.push_back("conditioning: a simulated terrain drains over its passes as it is");
     if (!o.converged) notes.push_back("converged: the steps were used up before the landscape was steady");
+    if (o.unconverged_sediment_steps > 0) {
+        notes.push_back(fmt::format("deposition: {} steps used up their iterations", o.unconverged_sediment_steps));
+    }
+    if (o.unconverged_hillslope_steps > 0) {
+        notes.push_back(
+            fmt::format("hillslope: {} steps of creep used up their iterations", o.unconverged_hillslope_steps));
+    }
     if (std::isnan(o.time_yr)) notes.push_back("time_yr and rates: undefined for the steady solver");
     Json summary{{"nodes", input.valid_cells},
                  {"steps", o.steps},
@@ -136,6 +147,8 @@ Json summary_json(const Domain& domain, const Outcome& o, const Finished& f, con
                  {"max_rate_m_per_yr", number(o.max_rate_m_per_yr)},
                  {"mean_rate_m_per_yr", number(o.mean_rate_m_per_yr)},
                  {"frozen_receivers", o.frozen_receivers},
+                 {"largest_sediment_iterations", o.largest_sediment_iterations},
+                 {"largest_hillslope_iterations", o.largest_hillslope_iterations},
                  {"domain_area_m2", domain.area_m2},
                  {"cell_area_sum_m2", input.area_m2},
                  {"elevation_max_m", number(f.statistics.hypsometry.maximum_m)},

@@ -23,6 +23,10 @@ struct Outcome {
     double max_rate_m_per_yr = std::numeric_limits<double>::quiet_NaN();
     double mean_rate_m_per_yr = std::numeric_limits<double>::quiet_NaN();
     Index frozen_receivers = 0;
+    int largest_sediment_iterations = 0;
+    Index unconverged_sediment_steps = 0;
+    int largest_hillslope_iterations = 0;
+    Index unconverged_hillslope_steps = 0;
     std::optional<evolve::MassBalance> mass;
     std::vector<evolve::StepRecord> history;
 };

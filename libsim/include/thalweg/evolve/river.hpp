@@ -22,6 +22,9 @@ enum class Flow { single, multiple };
 /// Where flow divides, S^n is averaged over where the water goes, Σ w_r·S_r^n with the shares w_r of
 /// `terrain::multiple_flow` at the beginning of the step, and A is the divided area. With all receivers equally steep
 /// that is the law of one receiver, whatever their number (decisions/2026-11-22-multiple-flow.md).
+///
+/// With G > 0 rivers lay down part of what they carry (Davy & Lague 2009; Yuan et al. 2019): dh/dt = u − k·A^m·S^n +
+/// (G/A)·Q, Q the rate at which all cells upstream lose volume, the node's own included.
 struct River {
     double k = 0;                                                  ///< erodibility, m^(1−2m)/yr
     double m = 0.5;                                                ///< area exponent
@@ -30,16 +33,19 @@ struct River {
     terrain::Receiver receiver = terrain::Receiver::steepest;
     Flow flow = Flow::single;
     double flow_exponent = 1.1;  ///< of the slopes in the shares (Freeman 1991)
+    double g = 0;                ///< G ≥ 0, dimensionless: deposition; 0: off. Needs single flow
 };
 
 /// Volumes moved in one step or many (m³), each summed from its own law and not from the difference it should close.
 /// Base-level nodes are in no term.
 struct MassBalance {
-    double uplifted_m3 = 0;  ///< Σ a·dt·u
-    double eroded_m3 = 0;    ///< Σ a·dt·k·A^m·S^n at the slopes at the end of the step
-    double talus_m3 = 0;     ///< what the talus limit took
-    double exported_m3 = 0;  ///< eroded + talus (− deposited): what left through the outlets
-    double stored_m3 = 0;    ///< Σ a·(h_end − h_start)
+    double uplifted_m3 = 0;   ///< Σ a·dt·u
+    double eroded_m3 = 0;     ///< Σ a·dt·k·A^m·S^n at the slopes at the end of the step
+    double talus_m3 = 0;      ///< what the talus limit took
+    double diffused_m3 = 0;   ///< what hillslope diffusion carried into base-level nodes, net
+    double deposited_m3 = 0;  ///< Σ a·dt·(G/A)·Q, what rivers laid down
+    double exported_m3 = 0;   ///< eroded + talus + diffused − deposited: what left through the outlets
+    double stored_m3 = 0;     ///< Σ a·(h_end − h_start)
 
     /// (uplifted − exported − stored) / uplifted; over exported where nothing was uplifted; 0 where nothing moved.
     double relative_residual() const;
@@ -72,6 +78,8 @@ struct StepReport {
     double mean_rate_m_per_yr;  ///< Σ a·|Δh| / (dt·Σ a), base level left out
     int largest_newton_iterations;
     MassBalance mass;
+    int sediment_iterations = 0;  ///< until heights and sediment agreed; 0 without deposition
+    bool sediment_converged = true;
 };
 
 /// One implicit step (Braun & Willett 2013) along the given drainage, from the outlets up: with b = h + dt·u, a node
@@ -83,10 +91,20 @@ struct StepReport {
 /// one such x, in closed form for n = 1, else by Newton's rule in a bracket (one pow per receiver and iteration). The
 /// talus limit holds towards the steepest receiver.
 ///
+/// With deposition (g > 0) all is solved together at the heights of the step's end: h' = b − dt·k·A^m·S'^n − talus +
+/// (G/A)·q, with q = Σ a·(b − h') over the node and everything upstream (what the talus limit took included). These
+/// equations form a tree: a node's height hangs on its receiver's and on the sediment that its donors send. Each
+/// iteration sweeps down and finds for every node how the sediment that leaves it answers to the height of its receiver
+/// (a straight line; for n ≠ 1 the tangent), then up, and solves every node's own equation with that answer in it. That
+/// is Newton's rule with the elimination done by hand: exact after one iteration for n = 1 outside of lakes, a few
+/// otherwise, at most 100, whatever dt and G. A node that begins the step in a lake (below ground that its water has to
+/// pass) is filled at most to the level that the lake has at the step's end, unless uplift alone lifts it out; what
+/// finds no room goes on with the water. Where no water runs (no rain) nothing is laid down.
+///
 /// A node without receiver keeps its height and is in no term: base level, an `open` node with no lower neighbour, and
 /// the lowest node of a connected piece that has no outlet at all. Nodes without data (NaN) stay as they are.
-/// Throws Error if sizes do not fit, k or m is negative, n is outside [0.3, 5], or the talus slope or dt is not
-/// positive.
+/// Throws Error if sizes do not fit, k or m is negative, n is outside [0.3, 5], the talus slope or dt is not
+/// positive, G is negative, or G > 0 where flow divides (then there is no tree).
 StepReport erode(const Grid&, const Drainage&, const River&, const Setting&, double dt_yr, Landscape&);
 StepReport erode(const Mesh&, const Drainage&, const River&, const Setting&, double dt_yr, Landscape&);
 

@@ -30,8 +30,12 @@ struct SimulationState {
     bool converged = false;
     double max_rate_m_per_yr = 0, mean_rate_m_per_yr = 0;  ///< of the last step
     int largest_newton_iterations = 0;
-    MassBalance mass;   ///< of all steps
-    bool calm = false;  ///< the last step moved no more than convergence asks for
+    int largest_sediment_iterations = 0;    ///< of a step with deposition
+    Index unconverged_sediment_steps = 0;   ///< steps with deposition that used up their iterations
+    int largest_hillslope_iterations = 0;   ///< Newton iterations of a step of nonlinear creep
+    Index unconverged_hillslope_steps = 0;  ///< steps of creep that used up their iterations
+    MassBalance mass;                       ///< of all steps
+    bool calm = false;                      ///< the last step moved no more than convergence asks for
     ExchangeWatch exchange;
     Slackening slackening;
 };
@@ -62,11 +66,16 @@ struct SimulationResult {
     Index lakes_final = 0;
     MassBalance mass;
     int largest_newton_iterations = 0;
+    int largest_sediment_iterations = 0;
+    Index unconverged_sediment_steps = 0;
+    int largest_hillslope_iterations = 0;
+    Index unconverged_hillslope_steps = 0;
 };
 
 using Observer = std::function<void(const StepRecord&, const SimulationState&)>;
 
-/// Steps until the landscape is steady or the steps are used up.
+/// Steps until the landscape is steady or the steps are used up. The processes of a step follow one another (first
+/// order in time), in the order of `Model`: uplift with river incision and the talus limit in one sweep, then creep.
 ///
 /// Steady: the mean rate Σa·|Δh|/dt is at most `convergence` times Σa·u, and the new heights drain the same way as
 /// those before the step (or the rate stays as low for one step more), so that no receiver that changes at the very end
@@ -95,9 +104,12 @@ struct SteadyResult {
     std::vector<std::uint8_t> frozen;
 };
 
-/// Steady state directly: under fixed receivers every slope is min(talus, (u/(k·A^m))^(1/n)), integrated up the trees;
+/// Steady state directly: under fixed receivers every slope is min(talus, ((u + G·U/A)/(k·A^m))^(1/n)), U the uplift
+/// (m³/yr) of the node and everything upstream, integrated up the trees;
 /// re-routed until no receiver changes (those that cycle are kept after 20 repeats and counted). Where u > 0 and k·A^m
 /// is 0 the talus limit must be on, else Error.
+/// On ground that hardly rises below ground that rises fast, channels with sediment shift for ever: then `converged` is
+/// false or many receivers are frozen.
 SteadyResult solve_steady(const Grid&, const River&, const Setting&, Index max_sweeps, Landscape&);
 SteadyResult solve_steady(const Mesh&, const River&, const Setting&, Index max_sweeps, Landscape&);
 

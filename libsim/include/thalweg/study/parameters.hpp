@@ -89,7 +89,12 @@ struct Experiment {
     } initial;
     struct {
         std::optional<double> talus_angle_deg;
+        double diffusivity_m2_per_yr = 0;
+        double critical_slope = 0;
     } hillslope;
+    struct {
+        double g = 0;
+    } deposition;
     struct {
         Solver solver = Solver::implicit;
         double step_yr = 100000;
@@ -227,6 +232,11 @@ void describe(AnyExperiment& e, Visit visit) {
           e.initial.elevation);
     visit(Field{"hillslope.talus_angle_deg", "degrees", "steepest stable slope; absent: no limit", 0, 90, true},
           e.hillslope.talus_angle_deg);
+    visit(Field{"hillslope.diffusivity_m2_per_yr", "m2/yr", "diffusivity of soil creep; 0: none", 0},
+          e.hillslope.diffusivity_m2_per_yr);
+    visit(Field{"hillslope.critical_slope", "m/m", "slope that creep cannot pass; 0: linear diffusion", 0},
+          e.hillslope.critical_slope);
+    visit(Field{"deposition.g", "", "G: how readily rivers lay down what they carry; 0: never", 0}, e.deposition.g);
     visit(Field{"time.solver", "", "implicit time stepping, or the steady state directly"}, e.time.solver);
     visit(Field{"time.step_yr", "yr", "time step", 0, infinity, true}, e.time.step_yr);
     visit(Field{"time.max_steps", "", "most steps (or sweeps of the steady solver)", 1, 1e9}, e.time.max_steps);
