@@ -49,7 +49,30 @@ struct Run {
     SlopeSolver solve;
     Drainage drainage = {};
     DrainBuffers buffers = {};
+    Setting scaled = {};    ///< the setting of one step, where uplift has a history
+    double settled_yr = 0;  ///< from then on nothing that drives the landscape changes
 };
+
+/// The setting of the step that begins now: the uplift's mean over the step, so that the volume uplifted is the
+/// history's integral whatever the steps.
+template <Topology T>
+const Setting& setting_of_step(Run<T>& run, double start_yr) {
+    if (run.setting.uplift_factor.value.empty()) return run.setting;
+    const double factor = mean_between(run.setting.uplift_factor, start_yr, start_yr + run.options.step_yr);
+    const auto& unscaled = run.setting.uplift_m_per_yr;
+    for (Index node = 0; node < unscaled.size(); ++node) run.scaled.uplift_m_per_yr[node] = factor * unscaled[node];
+    return run.scaled;
+}
+
+/// Implicit in time: a step erodes towards the base level at its end.
+void move_base_level(const Setting& setting, double end_yr, Landscape& landscape) {
+    if (setting.base_level_m.value.empty()) return;
+    const double level = value_at(setting.base_level_m, end_yr);
+    for (Index node = 0; node < landscape.elevation_m.size(); ++node) {
+        const bool moves = setting.boundary[node] == Boundary::base_level && !std::isnan(landscape.elevation_m[node]);
+        if (moves) landscape.elevation_m[node] = level;
+    }
+}
 
 template <Topology T>
 bool drains_as_before(const Run<T>& run, const SimulationState& state) {
@@ -84,9 +107,12 @@ template <Topology T>
 StepReport step(Run<T>& run, SimulationState& state) {
     Landscape& landscape = state.landscape;
     const River& river = run.model.river;
-    drain_into(run.topology, landscape, run.setting, river, state.exchange.frozen, run.drainage, run.buffers);
+    const double start_yr = landscape.time_yr;
+    const Setting& setting = setting_of_step(run, start_yr);
+    move_base_level(setting, start_yr + run.options.step_yr, landscape);
+    drain_into(run.topology, landscape, setting, river, state.exchange.frozen, run.drainage, run.buffers);
     const StepSums sums = with_edges(run.topology, [&](const auto& edges) {
-        return dig(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr, landscape);
+        return dig(edges, run.drainage, river, run.solve, setting, run.options.step_yr, landscape);
     });
     const StepReport report = sums.report(run.options.step_yr);
     ++state.steps;
@@ -94,7 +120,8 @@ StepReport step(Run<T>& run, SimulationState& state) {
     state.mean_rate_m_per_yr = report.mean_rate_m_per_yr;
     state.largest_newton_iterations = std::max(state.largest_newton_iterations, report.largest_newton_iterations);
     add(state.mass, report.mass);
-    if (run.options.convergence > 0) judge(run, sums.moved, sums.uplifted.value(), state);
+    const bool may_be_judged = run.options.convergence > 0 && start_yr >= run.settled_yr;
+    if (may_be_judged) judge(run, sums.moved, sums.uplifted.value(), state);
     return report;
 }
 
@@ -149,6 +176,8 @@ SimulationResult continued(const T& topology, const Model& model, const Setting&
                            SimulationState& state, const Observer& observer) {
     check(topology, model, setting, options, state.landscape);
     Run<T> run{topology, model, setting, options, SlopeSolver(model.river.n)};
+    run.settled_yr = std::max(last_change_yr(setting.uplift_factor), last_change_yr(setting.base_level_m));
+    if (!setting.uplift_factor.value.empty()) run.scaled = setting;
     while (state.steps < options.max_steps && !state.converged) {
         const auto start = Clock::now();
         step(run, state);
