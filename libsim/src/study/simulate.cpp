@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "study/forcing.hpp"
 #include "study/model.hpp"
 #include "study/report_json.hpp"
 #include "study/simulation_outputs.hpp"
@@ -189,9 +190,11 @@ std::string simulate_on(const Experiment& e, const std::filesystem::path& folder
                         MakeDomain make) {
     model_of(e);
     check_terrain_files(e);
+    const Forcing forcing = read_forcing(e);
     messages.progress("making the mesh");
     const Stopwatch meshing;
-    Domain domain = make();
+    Domain domain = make(with_forced_rate(e, forcing));
+    drive_in_time(domain, e, forcing);
     const double mesh_seconds = meshing.seconds();
     // The topology is moved out, so that the solver can change the rest of the domain beside it.
     const auto topology = std::move(domain.topology);
@@ -203,12 +206,12 @@ std::string simulate_on(const Experiment& e, const std::filesystem::path& folder
 }  // namespace
 
 std::string simulate(const Experiment& e, const std::filesystem::path& folder, const Messages& messages) {
-    return simulate_on(e, folder, messages, [&] { return make_domain(e, messages); });
+    return simulate_on(e, folder, messages, [&](const Experiment& forced) { return make_domain(forced, messages); });
 }
 
 std::string simulate(const Experiment& e, const Catchment& catchment, const std::filesystem::path& folder,
                      const Messages& messages) {
-    return simulate_on(e, folder, messages, [&] { return make_domain(e, catchment); });
+    return simulate_on(e, folder, messages, [&](const Experiment& forced) { return make_domain(forced, catchment); });
 }
 
 }  // namespace thalweg::study

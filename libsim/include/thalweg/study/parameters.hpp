@@ -44,6 +44,7 @@ struct Experiment {
     struct {
         double rate_m_per_yr = 1e-3;
         evolve::Pattern pattern = evolve::Pattern::constant;
+        std::optional<std::filesystem::path> history;
     } uplift;
     struct {
         std::optional<double> k;
@@ -51,6 +52,9 @@ struct Experiment {
         double n = 1;
         terrain::Receiver receiver = terrain::Receiver::steepest;
     } river;
+    struct {
+        std::optional<std::filesystem::path> history;
+    } base_level;
     struct {
         NoiseKind noise = NoiseKind::perlin;
         double amplitude_m = 0.01;
@@ -141,11 +145,18 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"domain.initial", "", "start from noise, or from the DEM's own heights"}, e.domain.initial);
     visit(Field{"uplift.rate_m_per_yr", "m/yr", "largest uplift rate", 0}, e.uplift.rate_m_per_yr);
     visit(Field{"uplift.pattern", "", "shape of the uplift over the domain"}, e.uplift.pattern);
+    visit(Field{"uplift.history", "",
+                "CSV of time_yr and rate_m_per_yr (takes the place of uplift.rate_m_per_yr) or factor (multiplies it), "
+                "straight lines between its rows"},
+          e.uplift.history);
     visit(Field{"river.k", "m^(1-2m)/yr", "erodibility; simulate needs it, a study fits it", 0, infinity, true},
           e.river.k);
     visit(Field{"river.m", "", "exponent of the drainage area; simulate needs it, a study fits it", 0, 5}, e.river.m);
     visit(Field{"river.n", "", "exponent of the slope", 0.3, 5}, e.river.n);
     visit(Field{"river.receiver", "", "neighbour that takes the water"}, e.river.receiver);
+    visit(Field{"base_level.history", "",
+                "CSV of time_yr and elevation_m of every outlet, straight lines between its rows"},
+          e.base_level.history);
     visit(Field{"initial.noise", "", "roughness of the initial surface"}, e.initial.noise);
     visit(Field{"initial.amplitude_m", "m", "height of that roughness", 0}, e.initial.amplitude_m);
     visit(Field{"hillslope.talus_angle_deg", "degrees", "steepest stable slope; absent: no limit", 0, 90, true},
