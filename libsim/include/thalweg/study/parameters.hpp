@@ -78,6 +78,8 @@ struct Experiment {
         std::optional<MeshFile> heightfield_mesh_file;
         bool solid = false;
         std::optional<double> base_depth_m;
+        std::optional<Index> snapshots_every;
+        std::optional<Index> checkpoint_every;
     } output;
     struct {
         std::optional<std::filesystem::path> dem;
@@ -187,6 +189,11 @@ void describe(AnyExperiment& e, Visit visit) {
         Field{"output.base_depth_m", "m",
               "depth of that base below the lowest point; default: a twentieth of the longer side", 0, infinity, true},
         e.output.base_depth_m);
+    visit(Field{"output.snapshots_every", "", "steps between snapshots (pictures and a netCDF); absent: none", 1, 1e9},
+          e.output.snapshots_every);
+    visit(Field{"output.checkpoint_every", "",
+                "steps after which a run saves itself, so that --resume can go on; absent: never", 1, 1e9},
+          e.output.checkpoint_every);
     visit(Field{"study.dem", "", "the DEM to be explained; a study needs it or a source"}, e.study.dem);
     visit(Field{"study.source", "", "where to fetch the DEM from, instead of study.dem (thalweg fetch --help)"},
           e.study.source);
