@@ -119,14 +119,15 @@ double parse_number(const std::string& option, const std::string& text, Sign sig
 }
 
 void run_into_folder(const CommonOptions& options, const std::string& figures,
-                     const std::function<std::string(const std::filesystem::path&, const study::Messages&)>& work) {
+                     const std::function<std::string(const std::filesystem::path&, const study::Messages&)>& work,
+                     const std::function<std::string()>& left_behind) {
     const ThreadLimit limit(options.threads);
     Console console(options.quiet);
     const study::Messages m = console.messages();
     study::OutputFolder folder(options.out, options.force ? study::IfPresent::replace : study::IfPresent::refuse);
     std::string summary;
     {
-        const InterruptGuard guard(folder);
+        const InterruptGuard guard(folder, left_behind);
         summary = work(folder.path(), m);
         if (!figures.empty() && !options.no_figures) {
             m.progress("drawing");

@@ -50,9 +50,11 @@ enum class Sign { any, positive, not_negative };
 double parse_number(const std::string& option, const std::string& text, Sign);
 
 /// Runs `work` with progress and warnings on standard error and a folder to write into, which appears only if it
-/// succeeds, and prints what it returns with --json. `figures` names the drawings to be made ("" for none).
+/// succeeds, and prints what it returns with --json. `left_behind`: see InterruptGuard. `figures` names the drawings to
+/// be made ("" for none).
 void run_into_folder(const CommonOptions&, const std::string& figures,
-                     const std::function<std::string(const std::filesystem::path&, const study::Messages&)>& work);
+                     const std::function<std::string(const std::filesystem::path&, const study::Messages&)>& work,
+                     const std::function<std::string()>& left_behind = {});
 
 void add_analyze(CLI::App&);
 void add_simulate(CLI::App&);

@@ -21,14 +21,15 @@ sigset_t watched_signals() {
     return set;
 }
 
-void watch(study::OutputFolder& folder) {
+void watch(study::OutputFolder& folder, const std::function<std::string()>& left_behind) {
     const sigset_t set = watched_signals();
     int sign = 0;
     sigwait(&set, &sign);
     if (sign == leave) return;
     study::stop_script();
     folder.discard();
-    std::cerr << "thalweg: error: stopped by a signal; nothing was written" << std::endl;
+    const std::string rest = left_behind ? left_behind() : "";
+    std::cerr << "thalweg: error: stopped by a signal; nothing was written" + rest + "\n" << std::flush;
     ::_exit(128 + sign);
 }
 
@@ -48,7 +49,8 @@ void let_signals_through() {
     ::signal(SIGPIPE, SIG_DFL);
 }
 
-InterruptGuard::InterruptGuard(study::OutputFolder& folder) : watcher_([&folder] { watch(folder); }) {}
+InterruptGuard::InterruptGuard(study::OutputFolder& folder, std::function<std::string()> left_behind)
+    : watcher_([&folder, left_behind = std::move(left_behind)] { watch(folder, left_behind); }) {}
 
 InterruptGuard::~InterruptGuard() {
     pthread_kill(watcher_.native_handle(), leave);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
+#include <string>
 #include <thread>
 
 #include "thalweg/study/output_folder.hpp"
@@ -18,7 +20,8 @@ void let_signals_through();
 /// the signal's number.
 class InterruptGuard {
   public:
-    explicit InterruptGuard(study::OutputFolder&);
+    /// `left_behind` is called last: it may tidy up, and what it returns ends the line.
+    explicit InterruptGuard(study::OutputFolder&, std::function<std::string()> left_behind = {});
     ~InterruptGuard();
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;

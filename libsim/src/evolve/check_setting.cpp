@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "thalweg/core/error.hpp"
@@ -24,6 +25,12 @@ void check_setting(Index nodes, const Landscape& landscape, const Setting& setti
     check_count("boundary", setting.boundary.size(), nodes);
     if (!setting.relative_erodibility.empty()) {
         check_count("relative erodibility", setting.relative_erodibility.size(), nodes);
+    }
+    check_history(setting.uplift_factor, "uplift");
+    check_history(setting.base_level_m, "base level");
+    const auto& factor = setting.uplift_factor.value;
+    if (!std::ranges::all_of(factor, [](double value) { return value >= 0; })) {
+        throw Error("the history of uplift falls below zero: subsidence is a falling base level");
     }
 }
 

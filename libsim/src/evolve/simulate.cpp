@@ -56,7 +56,30 @@ struct Run {
     std::optional<HillslopeSolver> creep = {};
     std::vector<double> before_m = {};  // heights before the step; only with creep
     SedimentBuffers sediment = {};      // only with deposition
+    Setting scaled = {};    ///< the setting of one step, where uplift has a history
+    double settled_yr = 0;  ///< from then on nothing that drives the landscape changes
 };
+
+/// The setting of the step that begins now: the uplift's mean over the step, so that the volume uplifted is the
+/// history's integral whatever the steps.
+template <Topology T>
+const Setting& setting_of_step(Run<T>& run, double start_yr) {
+    if (run.setting.uplift_factor.value.empty()) return run.setting;
+    const double factor = mean_between(run.setting.uplift_factor, start_yr, start_yr + run.options.step_yr);
+    const auto& unscaled = run.setting.uplift_m_per_yr;
+    for (Index node = 0; node < unscaled.size(); ++node) run.scaled.uplift_m_per_yr[node] = factor * unscaled[node];
+    return run.scaled;
+}
+
+/// Implicit in time: a step erodes towards the base level at its end.
+void move_base_level(const Setting& setting, double end_yr, Landscape& landscape) {
+    if (setting.base_level_m.value.empty()) return;
+    const double level = value_at(setting.base_level_m, end_yr);
+    for (Index node = 0; node < landscape.elevation_m.size(); ++node) {
+        const bool moves = setting.boundary[node] == Boundary::base_level && !std::isnan(landscape.elevation_m[node]);
+        if (moves) landscape.elevation_m[node] = level;
+    }
+}
 
 template <Topology T>
 Run<T> make_run(const T& topology, const Model& model, const Setting& setting, const TimeOptions& options) {
@@ -121,14 +144,17 @@ template <Topology T>
 StepReport step(Run<T>& run, SimulationState& state) {
     Landscape& landscape = state.landscape;
     const River& river = run.model.river;
+    const double start_yr = landscape.time_yr;
+    const Setting& setting = setting_of_step(run, start_yr);
     if (run.creep) run.before_m = landscape.elevation_m;
-    drain_into(run.topology, landscape, run.setting, river, state.exchange.frozen, run.drainage, run.buffers);
+    move_base_level(setting, start_yr + run.options.step_yr, landscape);
+    drain_into(run.topology, landscape, setting, river, state.exchange.frozen, run.drainage, run.buffers);
     const StepSums sums = with_edges(run.topology, [&](const auto& edges) {
         if (river.g > 0) {
-            return erode_with_sediment(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr,
-                                       landscape, run.sediment);
+            return erode_with_sediment(edges, run.drainage, river, run.solve, setting, run.options.step_yr, landscape,
+                                       run.sediment);
         }
-        return dig(edges, run.drainage, river, run.solve, run.setting, run.options.step_yr, landscape);
+        return dig(edges, run.drainage, river, run.solve, setting, run.options.step_yr, landscape);
     });
     StepReport report = sums.report(run.options.step_yr);
     const double moved_m3 = run.creep ? creep(run, state, report) : sums.moved;
@@ -139,7 +165,8 @@ StepReport step(Run<T>& run, SimulationState& state) {
     state.largest_sediment_iterations = std::max(state.largest_sediment_iterations, report.sediment_iterations);
     state.unconverged_sediment_steps += report.sediment_converged ? 0 : 1;
     add(state.mass, report.mass);
-    if (run.options.convergence > 0) judge(run, moved_m3, sums.uplifted.value(), state);
+    const bool may_be_judged = run.options.convergence > 0 && start_yr >= run.settled_yr;
+    if (may_be_judged) judge(run, moved_m3, sums.uplifted.value(), state);
     return report;
 }
 
@@ -199,6 +226,8 @@ SimulationResult continued(const T& topology, const Model& model, const Setting&
                            SimulationState& state, const Observer& observer) {
     check(topology, model, setting, options, state.landscape);
     Run<T> run = make_run(topology, model, setting, options);
+    run.settled_yr = std::max(last_change_yr(setting.uplift_factor), last_change_yr(setting.base_level_m));
+    if (!setting.uplift_factor.value.empty()) run.scaled = setting;
     while (state.steps < options.max_steps && !state.converged) {
         const auto start = Clock::now();
         step(run, state);

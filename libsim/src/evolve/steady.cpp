@@ -110,6 +110,9 @@ SteadyResult solved(const T& topology, const River& river, const Setting& settin
                     Landscape& landscape) {
     check_setting(topology.size(), landscape, setting);
     check_river(river);
+    if (!setting.uplift_factor.value.empty() || !setting.base_level_m.value.empty()) {
+        throw Error("a landscape whose uplift or base level has a history has no steady state: step through time");
+    }
     check_steady(topology, river, setting);
     const SteadySlope slope(river, setting);
     ExchangeWatch exchange = exchange_watch(topology.size(), patience);

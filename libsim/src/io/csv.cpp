@@ -149,6 +149,12 @@ bool is_blank(const Record& record) { return record.fields.size() == 1 && record
 void write_csv(const std::filesystem::path& path, const Table& table) { write_text(path, to_text(table)); }
 
 Table read_csv(const std::filesystem::path& path) {
+    std::vector<std::size_t> lines;
+    return read_csv(path, lines);
+}
+
+Table read_csv(const std::filesystem::path& path, std::vector<std::size_t>& lines) {
+    lines.clear();
     Reader reader(read_text(path), path.string());
     Record header;
     if (!reader.next(header) || is_blank(header)) throw Error(fmt::format("{} has no header line", path.string()));
@@ -160,6 +166,7 @@ Table read_csv(const std::filesystem::path& path) {
                                     record.fields.size(), columns.size()));
         }
         for (std::size_t i = 0; i < columns.size(); ++i) columns[i].push_back(std::move(record.fields[i]));
+        lines.push_back(record.line);
     }
     Table table{.name = path.stem().string(), .columns = {}, .kind = GeometryKind::no_geometry, .geometry = {}};
     for (std::size_t i = 0; i < columns.size(); ++i) {

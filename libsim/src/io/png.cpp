@@ -57,7 +57,8 @@ std::string png_of(std::span<const std::uint16_t> grey, Index width, Index heigh
 }
 
 std::string png_of(std::span<const std::uint8_t> rgb, Index width, Index height) {
-    return png_of_bands(rgb.data(), GDT_Byte, 3, width, height);
+    const std::size_t bands = rgb.size() / (std::size_t{width} * height);
+    return png_of_bands(rgb.data(), GDT_Byte, static_cast<int>(bands), width, height);
 }
 
 }  // namespace thalweg::io

@@ -2,9 +2,12 @@
 #include "thalweg/study/output_folder.hpp"
 
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <charconv>
 #include <fstream>
 #include <set>
 #include <sstream>
@@ -106,6 +109,22 @@ void OutputFolder::commit() {
     }
     committed_ = true;
     fs::remove_all(aside, problem);
+}
+
+void remove_abandoned(const fs::path& final) {
+    fs::path place = fs::absolute(final).lexically_normal();
+    if (!place.has_filename()) place = place.parent_path();
+    const std::string prefix = fmt::format(".{}.partial-", place.filename().string());
+    std::error_code ignored;
+    for (const auto& entry : fs::directory_iterator(place.parent_path(), ignored)) {
+        const std::string name = entry.path().filename().string();
+        if (!name.starts_with(prefix)) continue;
+        const std::string number = name.substr(prefix.size());
+        int process = 0;
+        const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), process);
+        const bool ours = problem == std::errc() && end == number.data() + number.size() && process > 0;
+        if (ours && ::kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
+    }
 }
 
 void write_text(const fs::path& path, const std::string& text) {

@@ -145,6 +145,10 @@ void draw_all(const fs::path& folder, const Messages& messages) {
 
 std::string run_study(const Experiment& e, Figures figures, const fs::path& folder, const Messages& messages) {
     check_dem_is_named(e);
+    if (e.output.checkpoint_every) {
+        throw Error(
+            "output.checkpoint_every is for thalweg simulate alone: what goes on with --resume is one simulation");
+    }
     if (!e.study.uplift_m_per_yr) {
         throw Error("study.uplift_m_per_yr is needed: slopes alone tell only k/u, and a simulation needs both");
     }

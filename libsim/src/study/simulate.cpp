@@ -7,9 +7,11 @@
 #include <cmath>
 #include <limits>
 
+#include "study/forcing.hpp"
 #include "study/model.hpp"
 #include "study/report_json.hpp"
 #include "study/simulation_outputs.hpp"
+#include "study/snapshots.hpp"
 #include "study/terrain_files.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/evolve/simulate.hpp"
@@ -29,21 +31,43 @@ class Stopwatch {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-template <class Topology>
-Outcome step_through_time(const Topology& topology, const evolve::Model& model, const Experiment& e, Domain& domain,
-                          const Messages& messages) {
-    Outcome o;
-    const auto observe = [&](const evolve::StepRecord& record, const evolve::SimulationState&) {
-        o.history.push_back(record);
-        if (record.step % 50 == 0) {
-            messages.progress(fmt::format("step {}: highest {:.1f} m, mean rate {:.3g} m/yr, {} lakes", record.step,
-                                          record.elevation_max_m, record.mean_rate_m_per_yr, record.lakes));
+/// Where a run writes, and where it saves itself (nowhere: null).
+struct Places {
+    std::filesystem::path results;
+    CheckpointFolder* checkpoints;
+};
+
+/// The state to begin with: that of the stopped run if there is one to be resumed, else the domain's start.
+Checkpoint beginning(const Experiment& e, Domain& domain, CheckpointFolder* checkpoints, const std::string& identity,
+                     const Messages& messages) {
+    std::optional<Checkpoint> saved = checkpoints != nullptr ? checkpoints->load(identity) : std::nullopt;
+    if (!saved) {
+        if (checkpoints != nullptr && checkpoints->resumes()) {
+            messages.warning(fmt::format("no stopped run was found in '{}', so this one began at its beginning",
+                                         checkpoints->path().string()));
         }
-    };
-    const evolve::TimeOptions time{e.time.step_yr, e.time.max_steps, e.time.convergence};
-    const evolve::SimulationResult r = evolve::simulate(topology, model, domain.setting, time, domain.start, observe);
+        return {evolve::initial_state(std::move(domain.start)), {}};
+    }
+    if (saved->state.steps > e.time.max_steps) {
+        throw Error(fmt::format("the stopped run has taken {} steps already, more than time.max_steps = {}",
+                                saved->state.steps, e.time.max_steps));
+    }
+    return std::move(*saved);
+}
+
+std::optional<Frames> frames_of(const Experiment& e, const Places& places, const evolve::SimulationState& state) {
+    if (!e.output.snapshots_every) return std::nullopt;
+    const bool kept = places.checkpoints != nullptr && (e.output.checkpoint_every || state.steps > 0);
+    Frames frames(kept ? places.checkpoints->frames() : places.results / ".frames", state.steps);
+    if (state.steps == 0) frames.keep(0, state.landscape);
+    return frames;
+}
+
+Outcome outcome_of(const evolve::SimulationResult& r, const evolve::SimulationState& state,
+                   std::vector<evolve::StepRecord> history) {
+    Outcome o;
     o.steps = r.steps;
-    o.time_yr = domain.start.time_yr;
+    o.time_yr = state.landscape.time_yr;
     o.converged = r.stop_reason == evolve::StopReason::converged;
     o.stop_reason = evolve::to_string(r.stop_reason);
     o.max_rate_m_per_yr = r.max_rate_m_per_yr;
@@ -54,6 +78,45 @@ Outcome step_through_time(const Topology& topology, const evolve::Model& model, 
     o.unconverged_sediment_steps = r.unconverged_sediment_steps;
     o.largest_hillslope_iterations = r.largest_hillslope_iterations;
     o.unconverged_hillslope_steps = r.unconverged_hillslope_steps;
+    o.history = std::move(history);
+    return o;
+}
+
+std::string in_words(const evolve::StepRecord& record) {
+    return fmt::format("step {}: highest {:.1f} m, mean rate {:.3g} m/yr, {} lakes", record.step,
+                       record.elevation_max_m, record.mean_rate_m_per_yr, record.lakes);
+}
+
+template <class Topology>
+void write_snapshots(const Frames& frames, const Topology& topology, const Domain& domain, const Experiment& e,
+                     Index steps, const std::filesystem::path& results) {
+    const auto raster_of = [&](const std::vector<double>& heights) {
+        return elevation_raster(topology, domain, heights, e);
+    };
+    frames.write(steps, domain.start, raster_of, results / "snapshots");
+    std::filesystem::remove_all(results / ".frames");
+}
+
+template <class Topology>
+Outcome step_through_time(const Topology& topology, const evolve::Model& model, const Experiment& e, Domain& domain,
+                          const Places& places, const Messages& messages) {
+    const std::string identity = places.checkpoints != nullptr ? identity_of(e) : "";
+    Checkpoint at = beginning(e, domain, places.checkpoints, identity, messages);
+    std::optional<Frames> frames = frames_of(e, places, at.state);
+    const auto observe = [&](const evolve::StepRecord& record, const evolve::SimulationState& state) {
+        at.history.push_back(record);
+        if (record.step % 50 == 0) messages.progress(in_words(record));
+        if (frames && record.step % *e.output.snapshots_every == 0) frames->keep(record.step, state.landscape);
+        const bool save = e.output.checkpoint_every && record.step % *e.output.checkpoint_every == 0;
+        if (save) places.checkpoints->save(state, at.history, identity);
+    };
+    const evolve::TimeOptions time{e.time.step_yr, e.time.max_steps, e.time.convergence};
+    const evolve::SimulationResult r = evolve::simulate(topology, model, domain.setting, time, at.state, observe);
+    if (places.checkpoints != nullptr) places.checkpoints->set_at_rest(at.state.converged);
+    if (e.output.checkpoint_every) places.checkpoints->save(at.state, at.history, identity);
+    Outcome o = outcome_of(r, at.state, std::move(at.history));
+    domain.start = std::move(at.state.landscape);
+    if (frames) write_snapshots(*frames, topology, domain, e, o.steps, places.results);
     return o;
 }
 
@@ -163,12 +226,14 @@ Json summary_json(const Domain& domain, const Outcome& o, const Finished& f, con
 
 template <class Topology>
 std::string run(const Topology& topology, const Experiment& e, Domain& domain, double mesh_seconds,
-                const std::filesystem::path& folder, const Messages& messages) {
+                const Places& places, const Messages& messages) {
+    const std::filesystem::path& folder = places.results;
     const evolve::Model model = model_of(e);
     messages.progress(fmt::format("simulating {} nodes", topology.size()));
     const Stopwatch simulating;
-    const Outcome outcome = e.time.solver == Solver::steady ? solve_directly(topology, model.river, e, domain)
-                                                            : step_through_time(topology, model, e, domain, messages);
+    const Outcome outcome = e.time.solver == Solver::steady
+                                ? solve_directly(topology, model.river, e, domain)
+                                : step_through_time(topology, model, e, domain, places, messages);
     const double simulate_seconds = simulating.seconds();
 
     messages.progress("measuring and writing");
@@ -197,31 +262,50 @@ std::string run(const Topology& topology, const Experiment& e, Domain& domain, d
     return text;
 }
 
+void check_saving(const Experiment& e, const Places& places) {
+    if (e.output.checkpoint_every && places.checkpoints == nullptr) {
+        throw Error(
+            "output.checkpoint_every is for thalweg simulate alone: what goes on with --resume is one simulation");
+    }
+    const bool saves = e.output.checkpoint_every || e.output.snapshots_every;
+    const bool resumes = places.checkpoints != nullptr && places.checkpoints->resumes();
+    if (e.time.solver == Solver::steady && (saves || resumes)) {
+        throw Error(
+            "time.solver = \"steady\" takes no steps through time: checkpoints, snapshots and --resume need "
+            "\"implicit\"");
+    }
+}
+
 template <class MakeDomain>
-std::string simulate_on(const Experiment& e, const std::filesystem::path& folder, const Messages& messages,
-                        MakeDomain make) {
+std::string simulate_on(const Experiment& e, const Places& places, const Messages& messages, MakeDomain make) {
     model_of(e);
     check_terrain_files(e);
+    check_saving(e, places);
+    const Forcing forcing = read_forcing(e);
     messages.progress("making the mesh");
     const Stopwatch meshing;
-    Domain domain = make();
+    Domain domain = make(with_forced_rate(e, forcing));
+    drive_in_time(domain, e, forcing);
     const double mesh_seconds = meshing.seconds();
     // The topology is moved out, so that the solver can change the rest of the domain beside it.
     const auto topology = std::move(domain.topology);
     domain.topology = std::holds_alternative<Grid>(topology) ? std::variant<Grid, Mesh>(std::get<Grid>(topology))
                                                              : std::variant<Grid, Mesh>(Mesh{});
-    return std::visit([&](const auto& t) { return run(t, e, domain, mesh_seconds, folder, messages); }, topology);
+    return std::visit([&](const auto& t) { return run(t, e, domain, mesh_seconds, places, messages); }, topology);
 }
 
 }  // namespace
 
-std::string simulate(const Experiment& e, const std::filesystem::path& folder, const Messages& messages) {
-    return simulate_on(e, folder, messages, [&] { return make_domain(e, messages); });
+std::string simulate(const Experiment& e, const std::filesystem::path& folder, const Messages& messages,
+                     CheckpointFolder* checkpoints) {
+    return simulate_on(e, {folder, checkpoints}, messages,
+                       [&](const Experiment& forced) { return make_domain(forced, messages); });
 }
 
 std::string simulate(const Experiment& e, const Catchment& catchment, const std::filesystem::path& folder,
                      const Messages& messages) {
-    return simulate_on(e, folder, messages, [&] { return make_domain(e, catchment); });
+    return simulate_on(e, {folder, nullptr}, messages,
+                       [&](const Experiment& forced) { return make_domain(forced, catchment); });
 }
 
 }  // namespace thalweg::study

@@ -94,7 +94,36 @@ io::Layer layer(const Experiment& e, std::string description) {
             .layout = cloud ? io::Layout::cloud_optimized : io::Layout::tiled};
 }
 
+/// On the mesh's own plane, in metres.
+Raster interpolated(const Mesh& mesh, const std::vector<double>& elevation_m, const Experiment& e) {
+    constexpr Index usual_resolution = 512;
+    Raster raster = surface::covering_raster(mesh, e.output.resolution.value_or(usual_resolution));
+    interpolate(mesh, elevation_m, e, raster);
+    return raster;
+}
+
+/// From that plane to the map.
+void put_on_map(const Domain& domain, Placement& place) {
+    place.crs_wkt = domain.placement.crs_wkt;
+    place.west /= domain.unit_m;
+    place.north /= domain.unit_m;
+    place.cell_width /= domain.unit_m;
+    place.cell_height /= domain.unit_m;
+}
+
 }  // namespace
+
+Raster elevation_raster(const Grid& grid, const Domain& domain, const std::vector<double>& elevation_m,
+                        const Experiment&) {
+    return {grid, domain.placement, elevation_m};
+}
+
+Raster elevation_raster(const Mesh& mesh, const Domain& domain, const std::vector<double>& elevation_m,
+                        const Experiment& e) {
+    Raster raster = interpolated(mesh, elevation_m, e);
+    put_on_map(domain, raster.placement);
+    return raster;
+}
 
 Heightfield heightfield(const Grid& grid, const Domain& domain, const Finished& f, const Experiment& e) {
     if (e.output.resolution) {
@@ -108,19 +137,12 @@ Heightfield heightfield(const Grid& grid, const Domain& domain, const Finished& 
 }
 
 Heightfield heightfield(const Mesh& mesh, const Domain& domain, const Finished& f, const Experiment& e) {
-    constexpr Index usual_resolution = 512;
     Heightfield h;
-    h.elevation = surface::covering_raster(mesh, e.output.resolution.value_or(usual_resolution));
-    interpolate(mesh, f.terrain.elevation_m, e, h.elevation);
+    h.elevation = interpolated(mesh, f.terrain.elevation_m, e);
     const std::vector<Index> node = surface::nearest_node(mesh, h.elevation);
     h.drainage_area_m2 = pick(f.terrain.drainage_area_m2, node, nan);
     h.basin_of = pick(f.statistics.basin_of, node, none);
-    Placement& place = h.elevation.placement;
-    place.crs_wkt = domain.placement.crs_wkt;
-    place.west /= domain.unit_m;
-    place.north /= domain.unit_m;
-    place.cell_width /= domain.unit_m;
-    place.cell_height /= domain.unit_m;
+    put_on_map(domain, h.elevation.placement);
     return h;
 }
 

@@ -51,6 +51,10 @@ struct Heightfield {
 Heightfield heightfield(const Grid&, const Domain&, const Finished&, const Experiment&);
 Heightfield heightfield(const Mesh&, const Domain&, const Finished&, const Experiment&);
 
+/// The elevations alone, interpolated as the experiment asks.
+Raster elevation_raster(const Grid&, const Domain&, const std::vector<double>& elevation_m, const Experiment&);
+Raster elevation_raster(const Mesh&, const Domain&, const std::vector<double>& elevation_m, const Experiment&);
+
 /// Map coordinates of the nodes; refers to the domain.
 PositionOf map_positions(const Domain&, const Raster& elevation);
 

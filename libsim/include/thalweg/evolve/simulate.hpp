@@ -86,6 +86,12 @@ using Observer = std::function<void(const StepRecord&, const SimulationState&)>;
 /// If for 50 steps only the same nodes exchanged their receivers, while the mean rate was under a tenth of the mean
 /// uplift and no longer fell to half, those receivers are frozen (as long as they lead down) and counted. With
 /// convergence = 0 nothing is frozen.
+///
+/// Histories in the setting: a step takes the mean uplift over itself (the exact integral of the history, so that the
+/// volume uplifted does not depend on the steps) and the base level at its end (first order, as the step itself). Base
+/// level is in no term of the mass balance, wherever it goes: its fall exports nothing by itself, its rise stores
+/// nothing. Whether the landscape is steady is not asked, and no receiver frozen, before a step that begins after the
+/// last change.
 SimulationResult simulate(const Grid&, const Model&, const Setting&, const TimeOptions&, Landscape&,
                           const Observer& = {});
 SimulationResult simulate(const Mesh&, const Model&, const Setting&, const TimeOptions&, Landscape&,

@@ -16,6 +16,9 @@ void write_csv(const std::filesystem::path&, const Table&);
 /// Reads what write_csv wrote: every column as numbers where all its fields are numbers or empty (NaN), else as text.
 Table read_csv(const std::filesystem::path&);
 
+/// The same; `lines` receives the line (from 1) in which each row begins, for messages about what it holds.
+Table read_csv(const std::filesystem::path&, std::vector<std::size_t>& lines);
+
 /// Writes tables as layers of a GeoPackage, bytes a function of the contents alone (fixed date).
 /// `crs_wkt` empty: an undefined Cartesian system.
 void write_geopackage(const std::filesystem::path&, const std::vector<Table>& layers, const std::string& crs_wkt);

@@ -34,6 +34,9 @@ class OutputFolder {
     bool committed_ = false;
 };
 
+/// Removes the hidden folders that runs into `final` left when they were killed, and nothing of a process that lives.
+void remove_abandoned(const std::filesystem::path& final);
+
 /// Writes a text file whole; throws Error if the disk is full or it cannot be written.
 void write_text(const std::filesystem::path&, const std::string&);
 

@@ -70,6 +70,7 @@ struct Experiment {
     } domain;
     struct : Variation {
         double rate_m_per_yr = 1e-3;
+        std::optional<std::filesystem::path> history;
     } uplift;
     struct : Variation {
         double maximum = 1;
@@ -81,6 +82,9 @@ struct Experiment {
         terrain::Receiver receiver = terrain::Receiver::steepest;
         std::optional<std::filesystem::path> k_field;
     } river;
+    struct {
+        std::optional<std::filesystem::path> history;
+    } base_level;
     struct {
         NoiseKind noise = NoiseKind::perlin;
         double amplitude_m = 0.01;
@@ -111,6 +115,8 @@ struct Experiment {
         std::optional<MeshFile> heightfield_mesh_file;
         bool solid = false;
         std::optional<double> base_depth_m;
+        std::optional<Index> snapshots_every;
+        std::optional<Index> checkpoint_every;
     } output;
     struct {
         std::optional<std::filesystem::path> dem;
@@ -217,6 +223,10 @@ void describe(AnyExperiment& e, Visit visit) {
         {"rainfall.pattern", "rainfall.direction_deg", "rainfall.steps", "rainfall.noise", "rainfall.noise_scale",
          "rainfall.field", "rainfall.lines", "rainfall.lines_width_m", "rainfall.lines_value"},
         e.rainfall, visit);
+    visit(Field{"uplift.history", "",
+                "CSV of time_yr and rate_m_per_yr (takes the place of uplift.rate_m_per_yr) or factor (multiplies it), "
+                "straight lines between its rows"},
+          e.uplift.history);
     visit(Field{"river.k", "m^(1-2m)/yr", "erodibility; simulate needs it, a study fits it", 0, infinity, true},
           e.river.k);
     visit(Field{"river.m", "", "exponent of the drainage area; simulate needs it, a study fits it", 0, 5}, e.river.m);
@@ -224,6 +234,9 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"river.receiver", "", "neighbour that takes the water"}, e.river.receiver);
     visit(Field{"river.k_field", "", "image or map of the erodibility, scaled so that its largest value is river.k"},
           e.river.k_field);
+    visit(Field{"base_level.history", "",
+                "CSV of time_yr and elevation_m of every outlet, straight lines between its rows"},
+          e.base_level.history);
     visit(Field{"initial.noise", "", "roughness of the initial surface"}, e.initial.noise);
     visit(Field{"initial.amplitude_m", "m", "height of that roughness", 0}, e.initial.amplitude_m);
     visit(Field{"initial.constant_m", "m", "height of the land above base level beneath that roughness"},
@@ -263,6 +276,11 @@ void describe(AnyExperiment& e, Visit visit) {
         Field{"output.base_depth_m", "m",
               "depth of that base below the lowest point; default: a twentieth of the longer side", 0, infinity, true},
         e.output.base_depth_m);
+    visit(Field{"output.snapshots_every", "", "steps between snapshots (pictures and a netCDF); absent: none", 1, 1e9},
+          e.output.snapshots_every);
+    visit(Field{"output.checkpoint_every", "",
+                "steps after which a run saves itself, so that --resume can go on; absent: never", 1, 1e9},
+          e.output.checkpoint_every);
     visit(Field{"study.dem", "", "the DEM to be explained; a study needs it or a source"}, e.study.dem);
     visit(Field{"study.source", "", "where to fetch the DEM from, instead of study.dem (thalweg fetch --help)"},
           e.study.source);

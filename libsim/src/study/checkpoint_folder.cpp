@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "thalweg/core/error.hpp"
+#include "thalweg/study/checkpoint.hpp"
+
+namespace thalweg::study {
+namespace fs = std::filesystem;
+namespace {
+
+fs::path hidden_sibling(const fs::path& results) {
+    fs::path place = fs::absolute(results).lexically_normal();
+    if (!place.has_filename()) place = place.parent_path();
+    return place.parent_path() / fmt::format(".{}.checkpoint", place.filename().string());
+}
+
+}  // namespace
+
+CheckpointFolder::CheckpointFolder(const fs::path& results, StoppedRun mode)
+    : folder_(hidden_sibling(results)), mode_(mode) {
+    if (!fs::is_directory(folder_)) return;
+    lock();
+    if (!fs::exists(state_file())) return;
+    if (mode == StoppedRun::refuse) {
+        throw Error(
+            fmt::format("a stopped run of '{}' can go on (its state is in '{}'): give --resume, or --force to "
+                        "forget it and start anew",
+                        results.string(), folder_.string()));
+    }
+    can_go_on_ = mode == StoppedRun::resume;
+    to_be_forgotten_ = mode == StoppedRun::forget;
+}
+
+CheckpointFolder::LockFile::~LockFile() {
+    if (number >= 0) ::close(number);
+}
+
+CheckpointFolder::~CheckpointFolder() { left_behind(); }
+
+void CheckpointFolder::lock() {
+    const fs::path file = folder_ / "lock";
+    const int number = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (number < 0) throw Error(fmt::format("cannot write into '{}'", folder_.string()));
+    if (::flock(number, LOCK_EX | LOCK_NB) == 0) {
+        lock_.number = number;
+        return;
+    }
+    ::close(number);
+    throw Error(fmt::format("another thalweg is at work on the run in '{}'", folder_.string()));
+}
+
+void CheckpointFolder::create() {
+    if (lock_.number < 0) {
+        std::error_code problem;
+        fs::create_directory(folder_, problem);
+        if (problem) throw Error(fmt::format("cannot write '{}': {}", folder_.string(), problem.message()));
+        lock();
+    }
+    if (!to_be_forgotten_) return;
+    fs::remove(state_file());
+    fs::remove_all(folder_ / "frames");
+    to_be_forgotten_ = false;
+}
+
+std::optional<Checkpoint> CheckpointFolder::load(const std::string& identity) {
+    if (!can_go_on_) return std::nullopt;
+    Checkpoint checkpoint = load_checkpoint(state_file(), identity);
+    saved_steps_ = checkpoint.state.steps;
+    return checkpoint;
+}
+
+void CheckpointFolder::save(const evolve::SimulationState& state, const std::vector<evolve::StepRecord>& history,
+                            const std::string& identity) {
+    create();
+    save_checkpoint(state, history, identity, state_file());
+    saved_steps_ = state.steps;
+    can_go_on_ = true;
+}
+
+fs::path CheckpointFolder::frames() {
+    create();
+    fs::create_directory(folder_ / "frames");
+    return folder_ / "frames";
+}
+
+void CheckpointFolder::results_are_written() {
+    if (at_rest_) can_go_on_ = false;
+    to_be_forgotten_ = false;
+}
+
+std::string CheckpointFolder::left_behind() {
+    if (can_go_on_) return fmt::format("; --resume goes on from step {}", saved_steps_.load());
+    std::error_code ignored;
+    if (lock_.number >= 0 && !to_be_forgotten_) fs::remove_all(folder_, ignored);
+    return "";
+}
+
+}  // namespace thalweg::study
