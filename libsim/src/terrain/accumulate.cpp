@@ -2,6 +2,7 @@
 #include "thalweg/terrain/accumulate.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 #include "terrain/blocks.hpp"
 #include "terrain/check_sizes.hpp"
@@ -82,6 +83,16 @@ std::vector<double> carve(const FlowGraph& graph, std::span<const double> elevat
         carved[receiver] = std::min(carved[receiver], carved[node]);
     });
     return carved;
+}
+
+std::vector<double> largest_upstream(const FlowGraph& graph, std::span<const double> values) {
+    check_sizes(graph.size(), values.size(), values.size());
+    std::vector<double> largest(values.begin(), values.end());
+    for (const Index node : std::views::reverse(graph.order)) {
+        const Index receiver = graph.receiver[node];
+        if (receiver != none) largest[receiver] = std::max(largest[receiver], largest[node]);
+    }
+    return largest;
 }
 
 }  // namespace thalweg::terrain

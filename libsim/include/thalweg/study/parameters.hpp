@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "thalweg/core/index.hpp"
+#include "thalweg/evolve/river.hpp"
 #include "thalweg/evolve/tectonics.hpp"
 #include "thalweg/mesh/points.hpp"
 #include "thalweg/terrain/route.hpp"
@@ -80,6 +81,8 @@ struct Experiment {
         std::optional<double> m;
         double n = 1;
         terrain::Receiver receiver = terrain::Receiver::steepest;
+        evolve::Flow flow = evolve::Flow::single;
+        double flow_exponent = 1.1;
         std::optional<std::filesystem::path> k_field;
     } river;
     struct {
@@ -160,6 +163,7 @@ const Words<MeshFile>& words(MeshFile);
 const Words<FitMethod>& words(FitMethod);
 const Words<evolve::Pattern>& words(evolve::Pattern);
 const Words<terrain::Receiver>& words(terrain::Receiver);
+const Words<evolve::Flow>& words(evolve::Flow);
 
 /// The keys of a variation, in one table or the other.
 struct VariationKeys {
@@ -232,6 +236,9 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"river.m", "", "exponent of the drainage area; simulate needs it, a study fits it", 0, 5}, e.river.m);
     visit(Field{"river.n", "", "exponent of the slope", 0.3, 5}, e.river.n);
     visit(Field{"river.receiver", "", "neighbour that takes the water"}, e.river.receiver);
+    visit(Field{"river.flow", "", "all water to one receiver, or divided among all lower neighbours"}, e.river.flow);
+    visit(Field{"river.flow_exponent", "", "exponent of the slopes in the shares of multiple flow", 0, 1000, true},
+          e.river.flow_exponent);
     visit(Field{"river.k_field", "", "image or map of the erodibility, scaled so that its largest value is river.k"},
           e.river.k_field);
     visit(Field{"base_level.history", "",
