@@ -5,6 +5,7 @@
 #include <span>
 
 #include "evolve/edges.hpp"
+#include "terrain/lake_buffers.hpp"
 #include "terrain/layered_order.hpp"
 #include "thalweg/core/parallel.hpp"
 #include "thalweg/evolve/river.hpp"
@@ -26,6 +27,7 @@ void keep_frozen(const Edges& edges, const std::vector<double>& elevation_m, con
 
 /// Memory that draining needs; kept from step to step it is allocated once.
 struct DrainBuffers {
+    terrain::LakeBuffers lakes;
     terrain::OrderBuffers order;
 };
 
@@ -75,7 +77,7 @@ void drain_into(const T& topology, const Landscape& landscape, const Setting& se
     if (!frozen.empty()) {
         with_edges(topology, [&](const auto& edges) { keep_frozen(edges, elevation_m, frozen, drainage.directions); });
     }
-    drainage.lakes = terrain::drain_lakes(topology, elevation_m, setting.boundary, drainage.directions);
+    drainage.lakes = terrain::drain_lakes(topology, elevation_m, setting.boundary, drainage.directions, buffers.lakes);
     if (river.flow == Flow::multiple) {
         const terrain::Division division{.exponent = river.flow_exponent};
         terrain::multiple_flow(topology, elevation_m, drainage.directions, division, drainage.flow);
