@@ -11,44 +11,104 @@ namespace {
 
 constexpr Index steps = 50;
 
+/// The rim at base level, noise of 1 m inside.
 template <class Topology>
-void run(benchmark::State& state, const Topology& topology, const std::vector<Boundary>& boundary,
-         const evolve::Model& model) {
-    const evolve::Setting setting{std::vector<double>(topology.size(), 1e-3), std::vector<double>(topology.size(), 1.0),
-                                  boundary};
-    for (auto _ : state) {
+struct Island {
+    Island(const Topology& shape, std::vector<Boundary> boundary)
+        : topology(shape),
+          setting{std::vector<double>(shape.size(), 1e-3), std::vector<double>(shape.size(), 1.0),
+                  std::move(boundary)} {}
+
+    evolve::Landscape noise() const {
         evolve::Landscape landscape{0, evolve::uniform_surface(topology.size(), 1.0, 1)};
         for (Index node = 0; node < topology.size(); ++node) {
-            if (boundary[node] == Boundary::base_level) landscape.elevation_m[node] = 0;
+            if (setting.boundary[node] == Boundary::base_level) landscape.elevation_m[node] = 0;
         }
-        evolve::simulate(topology, model, setting, {.step_yr = 2e4, .max_steps = steps, .convergence = 0}, landscape);
-        benchmark::DoNotOptimize(landscape);
+        return landscape;
     }
-    per_item(state, static_cast<double>(topology.size()) * steps);
-}
+    void walk(const evolve::Model& model, Index count, evolve::Landscape& landscape) const {
+        evolve::simulate(topology, model, setting, {.step_yr = 2e4, .max_steps = count, .convergence = 0},
+                         landscape);
+    }
 
-void raster(benchmark::State& state, evolve::Flow flow) {
-    const auto size = static_cast<Index>(state.range(0));
-    const ThreadLimit limit(static_cast<int>(state.range(1)));
-    const Grid grid = plane_grid(size, size, 100, 100);
+    const Topology& topology;
+    evolve::Setting setting;
+};
+
+Island<Grid> island(const Grid& grid) {
     auto boundary = terrain::data_edge(grid, std::vector<double>(grid.size(), 0.0));
     for (Boundary& b : boundary) b = b == Boundary::open ? Boundary::base_level : Boundary::interior;
-    const double m = 0.01 * static_cast<double>(state.range(2)), n = 0.1 * static_cast<double>(state.range(3));
-    run(state, grid, boundary, {.river = {.k = 2e-5, .m = m, .n = n, .flow = flow}});
+    return {grid, std::move(boundary)};
 }
 
-void raster_steps(benchmark::State& state) { raster(state, evolve::Flow::single); }
-void raster_steps_divided(benchmark::State& state) { raster(state, evolve::Flow::multiple); }
+Mesh square_mesh(Index nodes) {
+    const double side = 100 * std::sqrt(static_cast<double>(nodes));
+    const Polygon square{{0, 0}, {side, 0}, {side, side}, {0, side}};
+    return mesh::triangulate(square, mesh::poisson_disk_count(square, nodes, 1));
+}
+
+Island<Mesh> island(const Mesh& mesh) {
+    std::vector<Boundary> boundary;
+    for (const auto on : mesh.on_outline) boundary.push_back(on ? Boundary::base_level : Boundary::interior);
+    return {mesh, std::move(boundary)};
+}
+
+evolve::River river_of(const benchmark::State& state) {
+    return {.k = 2e-5, .m = 0.01 * static_cast<double>(state.range(2)), .n = 0.1 * static_cast<double>(state.range(3))};
+}
+
+template <class Topology>
+void run(benchmark::State& state, const Island<Topology>& island, const evolve::Model& model, Index steps_before) {
+    evolve::Landscape start = island.noise();
+    if (steps_before > 0) island.walk(model, steps_before, start);
+    for (auto _ : state) {
+        evolve::Landscape landscape = start;
+        island.walk(model, steps, landscape);
+        benchmark::DoNotOptimize(landscape);
+    }
+    per_item(state, static_cast<double>(island.topology.size()) * steps);
+}
+
+void raster_steps(benchmark::State& state) {
+    const Grid grid = plane_grid(static_cast<Index>(state.range(0)), static_cast<Index>(state.range(0)), 100, 100);
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    run(state, island(grid), {river_of(state)}, 0);
+}
 BENCHMARK(raster_steps)
     ->ArgNames({"size", "threads", "100m", "10n"})
     ->Args({1000, 1, 50, 10})
-    ->Args({1000, 2, 50, 10})
     ->Args({1000, 1, 40, 10})
     ->Args({1000, 1, 50, 15})
+    ->Args({1000, 1, 50, 13})
     ->Args({2000, 1, 50, 10})
+    ->Args({2000, 2, 50, 10})
+    ->Args({4000, 1, 50, 10})
     ->Unit(benchmark::kMillisecond)
-    ->Iterations(1);
+    ->Iterations(1)
+    ->UseRealTime();
 
+/// After the lakes are gone: with m = 0.5 within the first 100 steps.
+void raster_steps_without_lakes(benchmark::State& state) {
+    const Grid grid = plane_grid(static_cast<Index>(state.range(0)), static_cast<Index>(state.range(0)), 100, 100);
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    run(state, island(grid), {river_of(state)}, 100);
+}
+BENCHMARK(raster_steps_without_lakes)
+    ->ArgNames({"size", "threads", "100m", "10n"})
+    ->Args({1000, 1, 50, 10})
+    ->Args({2000, 1, 50, 10})
+    ->Args({2000, 2, 50, 10})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1)
+    ->UseRealTime();
+
+void raster_steps_divided(benchmark::State& state) {
+    const Grid grid = plane_grid(static_cast<Index>(state.range(0)), static_cast<Index>(state.range(0)), 100, 100);
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    evolve::River river = river_of(state);
+    river.flow = evolve::Flow::multiple;
+    run(state, island(grid), {river}, 0);
+}
 BENCHMARK(raster_steps_divided)
     ->ArgNames({"size", "threads", "100m", "10n"})
     ->Args({1000, 1, 50, 10})
@@ -58,31 +118,63 @@ BENCHMARK(raster_steps_divided)
     ->Iterations(1);
 
 void tin_steps(benchmark::State& state) {
-    const double side = 100 * std::sqrt(static_cast<double>(state.range(0)));
-    const Polygon square{{0, 0}, {side, 0}, {side, side}, {0, side}};
-    const Mesh mesh =
-        mesh::triangulate(square, mesh::poisson_disk_count(square, static_cast<Index>(state.range(0)), 1));
-    std::vector<Boundary> boundary;
-    for (const auto on : mesh.on_outline) boundary.push_back(on ? Boundary::base_level : Boundary::interior);
+    const Mesh mesh = square_mesh(static_cast<Index>(state.range(0)));
     const ThreadLimit limit(static_cast<int>(state.range(1)));
-    run(state, mesh, boundary, {.river = {.k = 2e-5, .m = 0.01 * static_cast<double>(state.range(2)), .n = 1}});
+    run(state, island(mesh), {river_of(state)}, 0);
 }
 BENCHMARK(tin_steps)
-    ->ArgNames({"nodes", "threads", "100m"})
-    ->Args({100000, 1, 50})
-    ->Args({1000000, 1, 50})
-    ->Args({1000000, 1, 40})
+    ->ArgNames({"nodes", "threads", "100m", "10n"})
+    ->Args({100000, 1, 50, 10})
+    ->Args({1000000, 1, 50, 10})
+    ->Args({1000000, 2, 50, 10})
+    ->Args({1000000, 1, 40, 10})
     ->Unit(benchmark::kMillisecond)
-    ->Iterations(1);
+    ->Iterations(1)
+    ->UseRealTime();
+
+/// Bell's case, 100 km square: the steady solver, per node and sweep; the counter gives the sweeps.
+void steady_tin(benchmark::State& state) {
+    const Mesh mesh = square_mesh(static_cast<Index>(state.range(0)));
+    const Island<Mesh> on = island(mesh);
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    Index sweeps = 0;
+    for (auto _ : state) {
+        evolve::Landscape landscape = on.noise();
+        sweeps = evolve::solve_steady(mesh, river_of(state), on.setting, 5000, landscape).sweeps;
+    }
+    state.counters["sweeps"] = sweeps;
+    per_item(state, static_cast<double>(mesh.size()) * sweeps);
+}
+BENCHMARK(steady_tin)
+    ->ArgNames({"nodes", "threads", "100m", "10n"})
+    ->Args({100000, 1, 50, 10})
+    ->Args({100000, 2, 50, 10})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1)
+    ->UseRealTime();
+
+/// One river of ten million nodes: no layer has more than one, and nothing may recurse.
+void single_river(benchmark::State& state) {
+    const auto nodes = static_cast<Index>(state.range(0));
+    const Grid grid = plane_grid(1, nodes, 100, 100);
+    evolve::Setting setting{std::vector<double>(nodes, 1e-3), std::vector<double>(nodes, 1.0),
+                            std::vector<Boundary>(nodes, Boundary::interior)};
+    setting.boundary[0] = Boundary::base_level;
+    evolve::Landscape landscape;
+    for (Index node = 0; node < nodes; ++node) landscape.elevation_m.push_back(1e-3 * node);
+    for (auto _ : state) {
+        evolve::simulate(grid, {.river = {.k = 2e-5}}, setting, {.step_yr = 2e4, .max_steps = 5, .convergence = 0},
+                         landscape);
+    }
+    per_item(state, 5.0 * nodes);
+}
+BENCHMARK(single_river)->Arg(1000000)->Arg(10000000)->Unit(benchmark::kMillisecond)->Iterations(1)->UseRealTime();
 
 /// The same with deposition (G = 1), or with creep after the rivers: linear, or with a critical slope of 0.8.
 void with_process(benchmark::State& state, evolve::Model model) {
-    const auto size = static_cast<Index>(state.range(0));
     const ThreadLimit limit(1);
-    const Grid grid = plane_grid(size, size, 100, 100);
-    auto boundary = terrain::data_edge(grid, std::vector<double>(grid.size(), 0.0));
-    for (Boundary& b : boundary) b = b == Boundary::open ? Boundary::base_level : Boundary::interior;
-    run(state, grid, boundary, model);
+    const Grid grid = plane_grid(static_cast<Index>(state.range(0)), static_cast<Index>(state.range(0)), 100, 100);
+    run(state, island(grid), model, 0);
 }
 
 void raster_steps_with_deposition(benchmark::State& state) {

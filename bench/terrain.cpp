@@ -87,7 +87,8 @@ void d_infinity_area(benchmark::State& state) {
     per_item(state, dem.grid.size());
 }
 
-#define SIZES Args({1000, 1})->Args({1000, 2})->Args({4000, 1})->Args({4000, 2})->Unit(benchmark::kMillisecond)
+#define SIZES \
+    Args({1000, 1})->Args({1000, 2})->Args({4000, 1})->Args({4000, 2})->Unit(benchmark::kMillisecond)->UseRealTime()
 BENCHMARK(fill)->SIZES;
 BENCHMARK(route)->SIZES;
 BENCHMARK(fill_flats_route_area)->SIZES;

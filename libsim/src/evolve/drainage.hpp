@@ -5,6 +5,7 @@
 #include <span>
 
 #include "evolve/edges.hpp"
+#include "terrain/lake_buffers.hpp"
 #include "terrain/layered_order.hpp"
 #include "thalweg/core/parallel.hpp"
 #include "thalweg/evolve/river.hpp"
@@ -26,6 +27,7 @@ void keep_frozen(const Edges& edges, const std::vector<double>& elevation_m, con
 
 /// Memory that draining needs; kept from step to step it is allocated once.
 struct DrainBuffers {
+    terrain::LakeBuffers lakes;
     terrain::OrderBuffers order;
 };
 
@@ -50,7 +52,7 @@ void drain_into(const T& topology, const Landscape& landscape, const Setting& se
     if (!frozen.empty()) {
         with_edges(topology, [&](const auto& edges) { keep_frozen(edges, elevation_m, frozen, drainage.directions); });
     }
-    drainage.lakes = terrain::drain_lakes(topology, elevation_m, setting.boundary, drainage.directions);
+    drainage.lakes = terrain::drain_lakes(topology, elevation_m, setting.boundary, drainage.directions, buffers.lakes);
     with_edges(topology, [&](const auto& edges) { collect_rain(edges, setting.rainfall, drainage.area_m2); });
     if (river.flow == Flow::multiple) {
         const terrain::Division division{.exponent = river.flow_exponent};

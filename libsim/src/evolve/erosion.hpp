@@ -244,6 +244,7 @@ class ErosionSweep {
     void layer(Index begin, Index end, StepSums& sums) const {
         Index at = begin;
         for (; at + most_lanes <= end; at += most_lanes) {
+            if (at + 4 * most_lanes <= end) fetch_batch(order_ + at + 3 * most_lanes);
             if (all_flow(order_ + at)) {
                 step<most_lanes>(order_ + at, sums);
             } else {
@@ -261,6 +262,15 @@ class ErosionSweep {
     }
 
   private:
+    /// Asks for what the nodes will need.
+    void fetch_batch(const Index* nodes) const {
+        for (int i = 0; i < most_lanes; ++i) {
+            __builtin_prefetch(elevation_ + nodes[i], 1);
+            __builtin_prefetch(area_m2_ + nodes[i]);
+            __builtin_prefetch(uplift_ + nodes[i]);
+        }
+    }
+
     bool all_flow(const Index* nodes) const {
         bool flow = true;
         for (int i = 0; i < most_lanes; ++i) flow &= directions_[nodes[i]] != no_flow;

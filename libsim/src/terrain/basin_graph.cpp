@@ -102,7 +102,8 @@ LowestPasses::LowestPasses(Index expected) : table_(std::bit_ceil(std::size_t{2}
 
 std::size_t LowestPasses::find_slot(std::uint64_t pair) const {
     const std::size_t mask = table_.size() - 1;
-    std::size_t slot = (pair * 0x9E3779B97F4A7C15u >> 20) & mask;  // Fibonacci hashing
+    // Fibonacci hashing, by bits that both numbers reach: lower ones would hang on the larger piece alone.
+    std::size_t slot = (pair * 0x9E3779B97F4A7C15u >> 32) & mask;
     while (table_[slot] != none && pairs_[table_[slot]] != pair) slot = (slot + 1) & mask;
     return slot;
 }

@@ -38,10 +38,14 @@ inline constexpr Pass no_pass{std::numeric_limits<double>::infinity(), none, non
 class LowestPasses {
   public:
     explicit LowestPasses(Index expected);
-    void offer(Index piece, Index other_piece, const Pass& pass) {
+    /// The lowest pass so far; good until the next call.
+    Pass& between(Index piece, Index other_piece) {
         const std::uint64_t pair = std::uint64_t{std::min(piece, other_piece)} << 32 | std::max(piece, other_piece);
         if (pair != last_pair_) look_up(pair);
-        Pass& best = passes_[last_];
+        return passes_[last_];
+    }
+    void offer(Index piece, Index other_piece, const Pass& pass) {
+        Pass& best = between(piece, other_piece);
         if (pass.height_m <= best.height_m && lower(pass, best)) best = pass;
     }
     std::vector<Pass> take() { return std::move(passes_); }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "thalweg/core/grid.hpp"
 #include "thalweg/core/index.hpp"
 #include "thalweg/core/parallel.hpp"
 
@@ -34,5 +35,8 @@ class Blocks {
     Index nodes_;
     Index count_;
 };
+
+/// Blocks of whole rows, numbered by rows.
+inline Blocks row_blocks(const Grid& grid) { return Blocks(grid.rows, std::max<Index>(1, 65536 / grid.cols)); }
 
 }  // namespace thalweg::terrain

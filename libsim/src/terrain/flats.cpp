@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <bit>
 #include <limits>
+#include <numeric>
 
+#include "terrain/blocks.hpp"
 #include "terrain/check_sizes.hpp"
 #include "terrain/downhill.hpp"
 #include "thalweg/core/parallel.hpp"
@@ -143,7 +145,9 @@ std::uint8_t reach_from(Flats& flats, Index cell, std::uint8_t mark, Queue& queu
     return static_cast<std::uint8_t>(~common);
 }
 
-void collect(Flats& flats, Index start, Flat& flat) {
+/// The flat of `start`, as far as it lies within [first, last). False if it may go on beyond: nothing there is touched.
+bool collect(Flats& flats, Index start, Index first, Index last, Flat& flat) {
+    bool complete = true;
     flat.cells.clear();
     flat.at_exit.clear();
     flat.at_rim.clear();
@@ -152,12 +156,17 @@ void collect(Flats& flats, Index start, Flat& flat) {
     flats.state[start] |= collected;
     for (std::size_t next = 0; next < flat.cells.size(); ++next) {
         const Index cell = flat.cells[next];
+        if (cell - first >= last - first) {
+            complete = false;
+            continue;
+        }
         const std::uint8_t lacking = reach_from(flats, cell, collected, flat.cells);
         flat.at_exit.make_room();
         flat.at_exit.push_if(lacking & stuck, cell);
         flat.at_rim.make_room();
         flat.at_rim.push_if(flats.state[cell] & has_higher, cell);
     }
+    return complete;
 }
 
 /// Adds `weight` times the number of steps from the cells in `queue` (1 there) to the surface, breadth first.
@@ -186,6 +195,61 @@ Slot slot_in_flat(const Flats& flats, Index cell) {
     return static_cast<Slot>(best & 7);
 }
 
+/// Gives the cells of a collected flat their directions; returns how many.
+Index resolve(Flats& flats, Flat& flat, FlowDirections& directions) {
+    if (flat.at_exit.empty()) return 0;
+    add_steps(flats, flat.at_exit, reached_from_exit, 2);
+    add_steps(flats, flat.at_rim, reached_from_rim, -1);
+    for (std::size_t i = 0; i < flat.cells.size(); ++i) {
+        directions[flat.cells[i]] = slot_in_flat(flats, flat.cells[i]);
+    }
+    return static_cast<Index>(flat.cells.size());
+}
+
+bool begins_flat(const Flats& flats, Index cell) { return (flats.state[cell] & (stuck | collected)) == stuck; }
+
+/// Flats within a strip of rows. The strip's outermost rows belong to no flat here if there are rows beyond, so that
+/// no other strip's cells are touched; flats that reach them are put off.
+Index resolve_in_strip(const Grid& grid, Index first_row, Index last_row, Flats& flats, FlowDirections& directions,
+                       std::vector<Index>& put_off) {
+    const Index first = (first_row == 0 ? 0 : first_row + 1) * grid.cols;
+    const Index last = (last_row == grid.rows ? grid.rows : last_row - 1) * grid.cols;
+    Flat flat;
+    Index resolved = 0;
+    for (Index start = first; start < last; ++start) {
+        if (!begins_flat(flats, start)) continue;
+        if (collect(flats, start, first, last, flat)) {
+            resolved += resolve(flats, flat, directions);
+        } else {
+            for (std::size_t i = 0; i < flat.cells.size(); ++i) put_off.push_back(flat.cells[i]);
+        }
+    }
+    return resolved;
+}
+
+/// Flats that cross the borders of strips: those put off, and what begins in the strips' outermost rows.
+Index resolve_across_strips(const Grid& grid, const Blocks& strips, const std::vector<std::vector<Index>>& put_off,
+                            Flats& flats, FlowDirections& directions) {
+    Flat flat;
+    Index resolved = 0;
+    const auto from = [&](Index start) {
+        if (!begins_flat(flats, start)) return;
+        collect(flats, start, 0, grid.size(), flat);
+        resolved += resolve(flats, flat, directions);
+    };
+    for (const auto& cells : put_off) {
+        for (const Index cell : cells) flats.state[cell] &= static_cast<std::uint8_t>(~collected);
+    }
+    for (const auto& cells : put_off) {
+        for (const Index cell : cells) from(cell);
+    }
+    for (Index strip = 1; strip < strips.count(); ++strip) {
+        const Index border = strips.first(strip) * grid.cols;
+        for (Index cell = border - grid.cols; cell < border + grid.cols; ++cell) from(cell);
+    }
+    return resolved;
+}
+
 }  // namespace
 
 Index resolve_flats(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary,
@@ -193,20 +257,15 @@ Index resolve_flats(const Grid& grid, std::span<const double> elevation_m, std::
     check_sizes(grid.size(), elevation_m.size(), boundary.size());
     check_sizes(grid.size(), directions.size(), directions.size());
     Flats flats = find_flats(grid, elevation_m, boundary, directions);
-    Flat flat;
-    Index resolved = 0;
-    for (Index start = 0; start < grid.size(); ++start) {
-        if ((flats.state[start] & (stuck | collected)) != stuck) continue;
-        collect(flats, start, flat);
-        if (flat.at_exit.empty()) continue;
-        add_steps(flats, flat.at_exit, reached_from_exit, 2);
-        add_steps(flats, flat.at_rim, reached_from_rim, -1);
-        for (std::size_t i = 0; i < flat.cells.size(); ++i) {
-            directions[flat.cells[i]] = slot_in_flat(flats, flat.cells[i]);
-        }
-        resolved += static_cast<Index>(flat.cells.size());
-    }
-    return resolved;
+    const Blocks strips = row_blocks(grid);
+    std::vector<Index> resolved(strips.count(), 0);
+    std::vector<std::vector<Index>> put_off(strips.count());
+    strips.for_each([&](Index strip) {
+        resolved[strip] =
+            resolve_in_strip(grid, strips.first(strip), strips.last(strip), flats, directions, put_off[strip]);
+    });
+    const Index within = std::accumulate(resolved.begin(), resolved.end(), Index{0});
+    return within + resolve_across_strips(grid, strips, put_off, flats, directions);
 }
 
 }  // namespace thalweg::terrain

@@ -2,6 +2,7 @@
 #include "thalweg/terrain/lakes.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -9,6 +10,7 @@
 #include "terrain/basin_graph.hpp"
 #include "terrain/check_sizes.hpp"
 #include "terrain/downhill.hpp"
+#include "terrain/lake_buffers.hpp"
 #include "terrain/passes.hpp"
 #include "terrain/terrain_view.hpp"
 #include "thalweg/core/parallel.hpp"
@@ -53,29 +55,44 @@ std::vector<Index> pits_after_joining_flats(const Terrain<T>& terrain, FlowDirec
 constexpr Index unlabelled = none - 1;
 
 /// Basin of every node: `outside`, or the number of the pit its water reaches; `none` without data. Each chain is
-/// walked to the first node that is known, and once more to write the label.
+/// walked to the first node that is known, and once more to write the label. Several threads may walk the same chain:
+/// they write the same labels, so it does not matter who comes first.
 template <Topology T>
-std::vector<Index> label_basins(const Terrain<T>& terrain, const FlowDirections& directions,
-                                const std::vector<Index>& pits) {
+void label_basins(const Terrain<T>& terrain, const FlowDirections& directions, const std::vector<Index>& pits,
+                  std::vector<Index>& basin) {
     const Index nodes = terrain.topology.size();
-    std::vector<Index> basin(nodes, unlabelled);
+    basin.resize(nodes);
+    parallel_for(0, nodes,
+                 [&](Index first, Index last) { std::fill(basin.begin() + first, basin.begin() + last, unlabelled); });
     for (Index number = 1; number < pits.size(); ++number) basin[pits[number]] = number;
     const auto neighbor = downhill(terrain.topology);
     const auto receiver = [&](Index node) { return neighbor(node, directions[node]); };
-    for (Index start = 0; start < nodes; ++start) {
-        Index node = start;
-        while (basin[node] == unlabelled && directions[node] != no_flow) node = receiver(node);
-        if (basin[node] == unlabelled) basin[node] = terrain.has_data(node) ? outside : none;
-        const Index label = basin[node];
-        for (node = start; basin[node] == unlabelled; node = receiver(node)) basin[node] = label;
-    }
-    return basin;
+    const auto read = [&](Index node) { return std::atomic_ref(basin[node]).load(std::memory_order_relaxed); };
+    const auto write = [&](Index node, Index label) {
+        std::atomic_ref(basin[node]).store(label, std::memory_order_relaxed);
+    };
+    parallel_for(0, nodes, [&](Index first, Index last) {
+        for (Index start = first; start < last; ++start) {
+            Index node = start;
+            Index label = read(node);
+            if (label != unlabelled) continue;
+            while (label == unlabelled && directions[node] != no_flow) {
+                node = receiver(node);
+                label = read(node);
+            }
+            if (label == unlabelled) {
+                label = terrain.has_data(node) ? outside : none;
+                write(node, label);
+            }
+            for (Index on_way = start; on_way != node; on_way = receiver(on_way)) write(on_way, label);
+        }
+    });
 }
 
 /// What is known once all water has a way out.
 struct Lakes {
-    std::vector<Index> pits;   ///< per basin; the outside has `none`
-    std::vector<Index> basin;  ///< per node
+    std::vector<Index> pits;       ///< per basin; the outside has `none`
+    std::span<const Index> basin;  ///< per node; empty if there is no basin but the outside
     SpillTree spill;
 };
 
@@ -87,7 +104,7 @@ SpillTree join_basins(const Terrain<T>& terrain, const Lakes& lakes) {
     Joined joined(basins);
     std::vector<Pass> tree;
     tree.reserve(basins);
-    join_over(lowest_pass_of_each_basin(terrain, lakes.basin, basins), joined, tree);
+    join_over(lowest_pass_of_each_basin(terrain, lakes.basin, lakes.pits), joined, tree);
     const Pieces pieces = number_pieces(joined, basins);
     std::vector<Pass> passes = passes_between_pieces(terrain, lakes.basin, pieces.of_basin, pieces.count);
     sort_lowest_first(passes);
@@ -96,12 +113,13 @@ SpillTree join_basins(const Terrain<T>& terrain, const Lakes& lakes) {
 }
 
 template <Topology T>
-Lakes find_lakes(const Terrain<T>& terrain, FlowDirections& directions) {
+Lakes find_lakes(const Terrain<T>& terrain, FlowDirections& directions, LakeBuffers& buffers) {
     Lakes lakes{.pits = pits_after_joining_flats(terrain, directions),
                 .basin = {},
                 .spill = {.way_out = {}, .order = {}, .lakes = 0}};
     if (lakes.pits.size() == 1) return lakes;
-    lakes.basin = label_basins(terrain, directions, lakes.pits);
+    label_basins(terrain, directions, lakes.pits, buffers.basin);
+    lakes.basin = buffers.basin;
     lakes.spill = join_basins(terrain, lakes);
     return lakes;
 }
@@ -121,7 +139,8 @@ template <Topology T>
 std::vector<double> filled(const Terrain<T>& terrain) {
     check_sizes(terrain.topology.size(), terrain.elevation_m.size(), terrain.boundary.size());
     FlowDirections directions = route(terrain.topology, terrain.elevation_m, terrain.boundary);
-    const Lakes lakes = find_lakes(terrain, directions);
+    LakeBuffers buffers;
+    const Lakes lakes = find_lakes(terrain, directions, buffers);
     std::vector<double> surface(terrain.elevation_m.begin(), terrain.elevation_m.end());
     if (lakes.pits.size() == 1) return surface;
     const std::vector<double> level = water_levels(lakes.spill);
@@ -155,10 +174,10 @@ Slot slot_towards(const T& topology, Index node, Index target) {
 }
 
 template <Topology T>
-Index drained(const Terrain<T>& terrain, FlowDirections& directions) {
+Index drained(const Terrain<T>& terrain, FlowDirections& directions, LakeBuffers& buffers) {
     check_sizes(terrain.topology.size(), terrain.elevation_m.size(), terrain.boundary.size());
     check_sizes(terrain.topology.size(), directions.size(), directions.size());
-    const Lakes lakes = find_lakes(terrain, directions);
+    const Lakes lakes = find_lakes(terrain, directions, buffers);
     for (Index basin = 1; basin < lakes.pits.size(); ++basin) {
         const Pass& out = lakes.spill.way_out[basin];
         reverse_path(terrain.topology, out.node, slot_towards(terrain.topology, out.node, out.other_node), directions);
@@ -177,13 +196,25 @@ std::vector<double> fill(const Mesh& mesh, std::span<const double> elevation_m, 
 }
 
 Index drain_lakes(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary,
+                  FlowDirections& directions, LakeBuffers& buffers) {
+    return drained(Terrain<Grid>{grid, elevation_m, boundary}, directions, buffers);
+}
+
+Index drain_lakes(const Mesh& mesh, std::span<const double> elevation_m, std::span<const Boundary> boundary,
+                  FlowDirections& directions, LakeBuffers& buffers) {
+    return drained(Terrain<Mesh>{mesh, elevation_m, boundary}, directions, buffers);
+}
+
+Index drain_lakes(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary,
                   FlowDirections& directions) {
-    return drained(Terrain<Grid>{grid, elevation_m, boundary}, directions);
+    LakeBuffers buffers;
+    return drain_lakes(grid, elevation_m, boundary, directions, buffers);
 }
 
 Index drain_lakes(const Mesh& mesh, std::span<const double> elevation_m, std::span<const Boundary> boundary,
                   FlowDirections& directions) {
-    return drained(Terrain<Mesh>{mesh, elevation_m, boundary}, directions);
+    LakeBuffers buffers;
+    return drain_lakes(mesh, elevation_m, boundary, directions, buffers);
 }
 
 }  // namespace thalweg::terrain

@@ -30,12 +30,15 @@ void offer_ways_out(const Terrain<T>& terrain, std::span<const Index> basin, Ind
     });
 }
 
-/// Lowest pass of every basin but the outside: one round of Borůvka's algorithm. `no_pass` where there is none.
-std::vector<Pass> lowest_pass_of_each_basin(const Terrain<Grid>&, std::span<const Index> basin, Index basins);
-std::vector<Pass> lowest_pass_of_each_basin(const Terrain<Mesh>&, std::span<const Index> basin, Index basins);
+/// Lowest pass of every basin but the outside: one round of Borůvka's algorithm. `no_pass` where there is none. `pit`
+/// is a node of each basin.
+std::vector<Pass> lowest_pass_of_each_basin(const Terrain<Grid>&, std::span<const Index> basin,
+                                            std::span<const Index> pit);
+std::vector<Pass> lowest_pass_of_each_basin(const Terrain<Mesh>&, std::span<const Index> basin,
+                                            std::span<const Index> pit);
 
-/// Lowest pass between each two pieces; `piece` gives the piece of each basin, and the outside is piece 0. The passes
-/// name basins.
+/// Lowest pass between each two pieces, for each block of nodes that has any; `piece` gives the piece of each basin,
+/// and the outside is piece 0. The passes name basins.
 std::vector<Pass> passes_between_pieces(const Terrain<Grid>&, std::span<const Index> basin,
                                         std::span<const Index> piece, Index pieces);
 std::vector<Pass> passes_between_pieces(const Terrain<Mesh>&, std::span<const Index> basin,

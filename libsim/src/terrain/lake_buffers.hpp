@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "thalweg/core/grid.hpp"
+#include "thalweg/core/mesh.hpp"
+
+namespace thalweg::terrain {
+
+/// Memory that finding lakes needs; kept from step to step it is allocated once.
+struct LakeBuffers {
+    std::vector<Index> basin;  ///< per node
+};
+
+/// `drain_lakes` with memory that is already there.
+Index drain_lakes(const Grid&, std::span<const double> elevation_m, std::span<const Boundary>, FlowDirections&,
+                  LakeBuffers&);
+Index drain_lakes(const Mesh&, std::span<const double> elevation_m, std::span<const Boundary>, FlowDirections&,
+                  LakeBuffers&);
+
+}  // namespace thalweg::terrain
