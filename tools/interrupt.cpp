@@ -21,13 +21,13 @@ sigset_t watched_signals() {
     return set;
 }
 
-void watch(study::OutputFolder& folder) {
+void watch(const std::function<void()>& discard) {
     const sigset_t set = watched_signals();
     int sign = 0;
     sigwait(&set, &sign);
     if (sign == leave) return;
     study::stop_script();
-    folder.discard();
+    discard();
     std::cerr << "thalweg: error: stopped by a signal; nothing was written" << std::endl;
     ::_exit(128 + sign);
 }
@@ -48,7 +48,8 @@ void let_signals_through() {
     ::signal(SIGPIPE, SIG_DFL);
 }
 
-InterruptGuard::InterruptGuard(study::OutputFolder& folder) : watcher_([&folder] { watch(folder); }) {}
+InterruptGuard::InterruptGuard(std::function<void()> discard)
+    : watcher_([discard = std::move(discard)] { watch(discard); }) {}
 
 InterruptGuard::~InterruptGuard() {
     pthread_kill(watcher_.native_handle(), leave);

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <functional>
 #include <thread>
-
-#include "thalweg/study/output_folder.hpp"
 
 namespace thalweg::tools {
 
@@ -14,11 +13,11 @@ void hold_back_signals();
 /// Takes that back, for a program that is about to become another.
 void let_signals_through();
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP discard the folder, say so in one line, and end the program with 128 plus
-/// the signal's number.
+/// While it lives, SIGINT, SIGTERM and SIGHUP discard what was written so far, say so in one line, and end the program
+/// with 128 plus the signal's number.
 class InterruptGuard {
   public:
-    explicit InterruptGuard(study::OutputFolder&);
+    explicit InterruptGuard(std::function<void()> discard);
     ~InterruptGuard();
     InterruptGuard(const InterruptGuard&) = delete;
     InterruptGuard& operator=(const InterruptGuard&) = delete;

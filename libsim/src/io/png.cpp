@@ -6,6 +6,7 @@
 
 #include "io/gdal_guard.hpp"
 #include "thalweg/core/error.hpp"
+#include "thalweg/io/picture_file.hpp"
 
 namespace thalweg::io {
 namespace {
@@ -56,7 +57,7 @@ std::string png_of(std::span<const std::uint16_t> grey, Index width, Index heigh
     return png_of_bands(grey.data(), GDT_UInt16, 1, width, height);
 }
 
-std::string png_of(std::span<const std::uint8_t> rgb, Index width, Index height) {
+std::string png_picture(std::span<const std::uint8_t> rgb, Index width, Index height) {
     return png_of_bands(rgb.data(), GDT_Byte, 3, width, height);
 }
 

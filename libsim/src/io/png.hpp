@@ -12,7 +12,4 @@ namespace thalweg::io {
 /// Contents of a PNG file: one grey value of 16 bits per pixel, row by row. Throws Error if GDAL cannot make it.
 std::string png_of(std::span<const std::uint16_t> grey, Index width, Index height);
 
-/// Red, green and blue of 8 bits each per pixel.
-std::string png_of(std::span<const std::uint8_t> rgb, Index width, Index height);
-
 }  // namespace thalweg::io
