@@ -14,6 +14,7 @@
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/parallel.hpp"
 #include "thalweg/study/figure.hpp"
+#include "thalweg/study/output_file.hpp"
 #include "thalweg/study/output_folder.hpp"
 
 namespace thalweg::tools {
@@ -127,7 +128,7 @@ void run_into_folder(const CommonOptions& options, const std::string& figures,
     study::OutputFolder folder(options.out, options.force ? study::IfPresent::replace : study::IfPresent::refuse);
     std::string summary;
     {
-        const InterruptGuard guard(folder, left_behind);
+        const InterruptGuard guard([&folder] { folder.discard(); }, left_behind);
         summary = work(folder.path(), m);
         if (!figures.empty() && !options.no_figures) {
             m.progress("drawing");
@@ -140,6 +141,22 @@ void run_into_folder(const CommonOptions& options, const std::string& figures,
         throw Error("the summary cannot be written to standard output; the results are in " + options.out);
     }
     if (!options.json && !options.quiet) std::cerr << "thalweg: results are in " << options.out << '\n';
+}
+
+void run_to_file(const FileOptions& options, const std::function<std::string(const study::Messages&)>& work,
+                 const std::string& summary) {
+    const ThreadLimit limit(options.threads);
+    Console console(options.quiet);
+    study::OutputFile file(options.out, options.force ? study::IfPresent::replace : study::IfPresent::refuse);
+    {
+        const InterruptGuard guard([&file] { file.discard(); });
+        file.write(work(console.messages()));
+    }
+    console.finish();
+    if (options.json && !(std::cout << summary << std::flush)) {
+        throw Error("the summary cannot be written to standard output; the result is in " + options.out);
+    }
+    if (!options.json && !options.quiet) std::cerr << "thalweg: the result is in " << options.out << '\n';
 }
 
 }  // namespace thalweg::tools

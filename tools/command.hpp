@@ -56,12 +56,24 @@ void run_into_folder(const CommonOptions&, const std::string& figures,
                      const std::function<std::string(const std::filesystem::path&, const study::Messages&)>& work,
                      const std::function<std::string()>& left_behind = {});
 
+/// The same for a command that writes one file: `work` returns its contents.
+struct FileOptions {
+    std::string out;
+    bool force = false;
+    bool quiet = false;
+    bool json = false;
+    int threads = 0;
+};
+void run_to_file(const FileOptions&, const std::function<std::string(const study::Messages&)>& work,
+                 const std::string& summary);
+
 void add_analyze(CLI::App&);
 void add_simulate(CLI::App&);
 void add_fit(CLI::App&);
 void add_compare(CLI::App&);
 void add_run(CLI::App&);
 void add_fetch(CLI::App&);
+void add_render(CLI::App&);
 void add_version(CLI::App&);
 
 }  // namespace thalweg::tools

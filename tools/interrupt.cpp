@@ -21,13 +21,13 @@ sigset_t watched_signals() {
     return set;
 }
 
-void watch(study::OutputFolder& folder, const std::function<std::string()>& left_behind) {
+void watch(const std::function<void()>& discard, const std::function<std::string()>& left_behind) {
     const sigset_t set = watched_signals();
     int sign = 0;
     sigwait(&set, &sign);
     if (sign == leave) return;
     study::stop_script();
-    folder.discard();
+    discard();
     const std::string rest = left_behind ? left_behind() : "";
     std::cerr << "thalweg: error: stopped by a signal; nothing was written" + rest + "\n" << std::flush;
     ::_exit(128 + sign);
@@ -49,8 +49,8 @@ void let_signals_through() {
     ::signal(SIGPIPE, SIG_DFL);
 }
 
-InterruptGuard::InterruptGuard(study::OutputFolder& folder, std::function<std::string()> left_behind)
-    : watcher_([&folder, left_behind = std::move(left_behind)] { watch(folder, left_behind); }) {}
+InterruptGuard::InterruptGuard(std::function<void()> discard, std::function<std::string()> left_behind)
+    : watcher_([discard = std::move(discard), left_behind = std::move(left_behind)] { watch(discard, left_behind); }) {}
 
 InterruptGuard::~InterruptGuard() {
     pthread_kill(watcher_.native_handle(), leave);

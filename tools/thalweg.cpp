@@ -61,7 +61,7 @@ int parse_and_run(int argc, char** argv) {
     app.failure_message([](const CLI::App*, const CLI::Error& error) { return std::string(error.what()); });
     for (const auto add : {thalweg::tools::add_analyze, thalweg::tools::add_simulate, thalweg::tools::add_fit,
                            thalweg::tools::add_compare, thalweg::tools::add_run, thalweg::tools::add_fetch,
-                           thalweg::tools::add_version}) {
+                           thalweg::tools::add_render, thalweg::tools::add_version}) {
         add(app);
     }
     refuse_unknown_command(app, argc, argv);

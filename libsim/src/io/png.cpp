@@ -6,6 +6,7 @@
 
 #include "io/gdal_guard.hpp"
 #include "thalweg/core/error.hpp"
+#include "thalweg/io/picture_file.hpp"
 
 namespace thalweg::io {
 namespace {
@@ -59,6 +60,10 @@ std::string png_of(std::span<const std::uint16_t> grey, Index width, Index heigh
 std::string png_of(std::span<const std::uint8_t> rgb, Index width, Index height) {
     const std::size_t bands = rgb.size() / (std::size_t{width} * height);
     return png_of_bands(rgb.data(), GDT_Byte, static_cast<int>(bands), width, height);
+}
+
+std::string png_picture(std::span<const std::uint8_t> rgb, Index width, Index height) {
+    return png_of(rgb, width, height);
 }
 
 }  // namespace thalweg::io

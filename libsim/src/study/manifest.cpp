@@ -15,6 +15,7 @@
 #include "thalweg/infer/versions.hpp"
 #include "thalweg/io/versions.hpp"
 #include "thalweg/mesh/versions.hpp"
+#include "thalweg/render/versions.hpp"
 
 namespace thalweg::study {
 
@@ -38,7 +39,8 @@ std::string sha256_of(const std::filesystem::path& path) {
 
 Versions versions() {
     Versions v{.thalweg = THALWEG_VERSION, .commit = THALWEG_COMMIT, .libraries = {}};
-    for (const auto& libraries : {io::library_versions(), mesh::library_versions(), infer::library_versions()}) {
+    for (const auto& libraries : {io::library_versions(), mesh::library_versions(), infer::library_versions(),
+                                  render::library_versions()}) {
         v.libraries.insert(v.libraries.end(), libraries.begin(), libraries.end());
     }
     v.libraries.emplace_back("oneTBB", fmt::format("{}.{}", TBB_VERSION_MAJOR, TBB_VERSION_MINOR));

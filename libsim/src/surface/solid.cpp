@@ -121,21 +121,27 @@ TriangleSurface triangle_surface(const Mesh& mesh, std::span<const double> heigh
     return s;
 }
 
+std::vector<Triangle> cell_triangles(const Grid& grid, std::span<const double> heights_m) {
+    check_size(heights_m.size(), grid.size(), "heights");
+    std::vector<Triangle> triangles;
+    triangles.reserve(2 * std::size_t{grid.size()});
+    for (Index row = 0; row + 1 < grid.rows; ++row) {
+        for (Index col = 0; col + 1 < grid.cols; ++col) {
+            const Index nw = row * grid.cols + col, sw = nw + grid.cols;
+            add_square({nw, nw + 1, sw, sw + 1}, heights_m, triangles);
+        }
+    }
+    return triangles;
+}
+
 TriangleSurface triangle_surface(const Grid& grid, std::span<const Point> centers, std::span<const double> heights_m) {
     check_size(centers.size(), grid.size(), "centres");
-    check_size(heights_m.size(), grid.size(), "heights");
     TriangleSurface s;
+    s.triangles = cell_triangles(grid, heights_m);
     s.z.assign(heights_m.begin(), heights_m.end());
     for (const Point& p : centers) {
         s.x.push_back(p.x);
         s.y.push_back(p.y);
-    }
-    s.triangles.reserve(2 * std::size_t{grid.size()});
-    for (Index row = 0; row + 1 < grid.rows; ++row) {
-        for (Index col = 0; col + 1 < grid.cols; ++col) {
-            const Index nw = row * grid.cols + col, sw = nw + grid.cols;
-            add_square({nw, nw + 1, sw, sw + 1}, heights_m, s.triangles);
-        }
     }
     drop_unused_vertices(s);
     return s;

@@ -13,6 +13,9 @@ namespace thalweg::surface {
 /// no data (NaN), and then without nodes that no triangle needs. Throws Error unless there is one height per node.
 TriangleSurface triangle_surface(const Mesh&, std::span<const double> heights_m);
 
+/// The triangles between the cells of a grid that have data, by the cells' numbers, by the rule below.
+std::vector<std::array<Index, 3>> cell_triangles(const Grid&, std::span<const double> heights_m);
+
 /// A grid's cells as triangles between their centres, which lie at `centers` (m, one per cell): four neighbouring cells
 /// make two triangles, cut along the diagonal of smaller fall (equal: from the north-west), three make one where the
 /// fourth has no data. Throws Error unless there is one centre and one height per cell.

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/render.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "study/coarser.hpp"
+#include "study/local_metres.hpp"
+#include "study/report_json.hpp"
+#include "study/water.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/io/picture_file.hpp"
+#include "thalweg/render/colors.hpp"
+#include "thalweg/render/trace.hpp"
+#include "thalweg/render/wireframe.hpp"
+#include "thalweg/surface/solid.hpp"
+
+namespace thalweg::study {
+namespace {
+
+constexpr double line_width = 1.1;  // pixels
+
+enum class FileKind { png, svg };
+
+FileKind kind_of(const std::filesystem::path& out, const RenderOptions& options) {
+    std::string extension = out.extension().string();
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (extension == ".png") return FileKind::png;
+    if (extension != ".svg") throw Error(fmt::format("'{}' must end in .png or .svg", out.string()));
+    if (options.style == PictureStyle::surface) {
+        throw Error("a surface is drawn in pixels: name a .png, or use --style wireframe or polygons for an .svg");
+    }
+    return FileKind::svg;
+}
+
+void check(const RenderOptions& o) {
+    if (!(o.vertical_exaggeration > 0) || !std::isfinite(o.vertical_exaggeration)) {
+        throw Error(fmt::format("the vertical exaggeration must be above 0, not {}", o.vertical_exaggeration));
+    }
+    if (o.samples == 0 || o.samples > 4096) throw Error(fmt::format("{} samples per pixel: 1 to 4096", o.samples));
+    if (o.lines < 2 || o.lines > 2000) throw Error(fmt::format("{} lines: from 2 to 2000 make a grid", o.lines));
+    if (o.network && o.color != PictureColor::kelley) {
+        throw Error("channels are painted in the colours 'kelley' only: use --color kelley, or leave out --network");
+    }
+}
+
+std::vector<render::Rgb> colors(const Raster& raster, const LocalMetres& local, const RenderOptions& o) {
+    if (o.color == PictureColor::clay) return render::clay_colors(raster.values.size());
+    if (o.color == PictureColor::elevation) return render::elevation_colors(raster.values);
+    const std::vector<double> water =
+        o.network ? water_of_lines(raster, *o.network) : water_of_flow(raster, o.channel_area_m2);
+    const std::vector<double> gradient = render::gradients(raster.grid, raster.values);
+    return render::natural_colors({.places = local.centers,
+                                   .heights = raster.values,
+                                   .gradient = gradient,
+                                   .water = water,
+                                   .tree_line_m = o.tree_line_m,
+                                   .snow_line_m = o.snow_line_m});
+}
+
+/// The sides and the base that make a block of the terrain, without the terrain itself.
+TriangleSurface sides_of(const TriangleSurface& ground, const Grid& grid, const LocalMetres& local) {
+    TriangleSurface top = surface::triangle_surface(grid, local.centers, ground.z);
+    const auto [low, high] = std::minmax_element(top.z.begin(), top.z.end());
+    const auto [west, east] = std::minmax_element(top.x.begin(), top.x.end());
+    const auto [south, north] = std::minmax_element(top.y.begin(), top.y.end());
+    const double depth = std::max(0.25 * (*high - *low), 0.02 * std::max(*east - *west, *north - *south));
+    TriangleSurface sides = surface::closed_solid(top, *low - depth);
+    sides.triangles.erase(sides.triangles.begin(),
+                          sides.triangles.begin() + static_cast<std::ptrdiff_t>(top.triangles.size()));
+    return sides;
+}
+
+render::Model model_of(const Raster& raster, const RenderOptions& o) {
+    const LocalMetres local = local_metres(raster);
+    render::Model model{
+        .ground = {},
+        .color = colors(raster, local, o),
+        .sides = {},
+        .side_color = render::from_srgb(0x8c7f70),
+        .shading = o.style == PictureStyle::surface ? render::Shading::smooth : render::Shading::facets};
+    for (const Point& p : local.centers) {
+        model.ground.x.push_back(p.x);
+        model.ground.y.push_back(p.y);
+    }
+    for (const double height : raster.values) model.ground.z.push_back(o.vertical_exaggeration * height);
+    model.ground.triangles = surface::cell_triangles(raster.grid, model.ground.z);
+    if (model.ground.triangles.empty()) {
+        throw Error("there is nothing to draw: no neighbouring cells have data");
+    }
+    if (o.sides == PictureSides::block && o.style == PictureStyle::surface) {
+        model.sides = sides_of(model.ground, raster.grid, local);
+    }
+    return model;
+}
+
+render::Light light_of(const RenderOptions& o) {
+    return {.to_sun = render::direction(o.sun_azimuth, o.sun_elevation),
+            .sun = {0.95f, 0.90f, 0.80f},
+            .sky = {0.32f, 0.37f, 0.46f}};
+}
+
+render::Background background_of(const RenderOptions& o) {
+    if (o.background == PictureBackground::white) return {{1, 1, 1}, {1, 1, 1}};
+    return {render::from_srgb(0xbfd0e2), render::from_srgb(0xf4f3ef)};
+}
+
+std::string png_of(const render::Picture& picture, const RenderOptions& o) {
+    return io::png_picture(render::to_srgb(picture, background_of(o)), picture.width, picture.height);
+}
+
+std::string draw_lines(const Raster& raster, const render::Model& model, const render::Camera& camera, FileKind kind,
+                       const RenderOptions& o) {
+    const auto edges = render::grid_edges(raster.grid, raster.values);
+    const auto strokes = render::visible_strokes(model.ground, edges, camera);
+    const bool filled = o.style == PictureStyle::polygons;
+    if (kind == FileKind::svg) {
+        const auto facets = filled ? render::painted_facets(model, camera, light_of(o)) : std::vector<render::Facet>();
+        return render::svg_of(camera.width, camera.height, facets, strokes, line_width);
+    }
+    render::Picture picture{.width = camera.width, .height = camera.height, .light = {}, .coverage = {}};
+    if (filled) picture = render::trace(model, camera, light_of(o), {.samples = o.samples, .sky_rays = 4});
+    picture.light.resize(std::size_t{camera.width} * camera.height);
+    picture.coverage.resize(picture.light.size());
+    render::draw(picture, strokes, line_width, render::from_srgb(0x222222));
+    RenderOptions on_paper = o;
+    if (!filled) on_paper.background = PictureBackground::white;
+    return png_of(picture, on_paper);
+}
+
+}  // namespace
+
+std::string render_dem(const std::filesystem::path& dem, const std::filesystem::path& out, const RenderOptions& o,
+                       const Messages& messages) {
+    constexpr double most_cells = 4e6;
+    const FileKind kind = kind_of(out, o);
+    check(o);
+    messages.progress("reading");
+    Raster raster = read_dem(dem, o.read, messages).raster;
+    const Index longer = std::max(raster.grid.rows, raster.grid.cols);
+    const double share = std::sqrt(most_cells / std::max(most_cells, double(raster.grid.size())));
+    const bool pixels = o.style == PictureStyle::surface;
+    raster = coarser(raster, pixels ? static_cast<Index>(std::max(2.0, longer * share)) : o.lines);
+    const render::Model model = model_of(raster, o);
+    const render::Camera camera = render::fitting_camera(o.view, model.ground, model.sides);
+    messages.progress("drawing");
+    if (!pixels) return draw_lines(raster, model, camera, kind, o);
+    return png_of(render::trace(model, camera, light_of(o), {.samples = o.samples, .sky_rays = 4}), o);
+}
+
+std::string render_summary(const std::filesystem::path& out, const RenderOptions& o) {
+    return text_of({{"file", out.filename().string()}, {"width", o.view.width}, {"height", o.view.height}});
+}
+
+}  // namespace thalweg::study
