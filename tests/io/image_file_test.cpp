@@ -18,7 +18,7 @@ using test::TempFolder;
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_data = std::numeric_limits<double>::quiet_NaN();
 
 /// The same picture as ASCII and as bytes: `colours` values a cell.
 struct Pair {
@@ -109,7 +109,7 @@ TEST_CASE("Of a coloured picture the value is the mean of the colours, and trans
 TEST_CASE("A raster on the map keeps its place and its voids, a plain picture has none", "[image]") {
     const TempFolder temp;
     Raster raster{plane_grid(2, 3, 10, 10), {.west = 500, .north = 900, .cell_width = 10, .cell_height = 10}, {}};
-    raster.values = {1, 2, 3, 4, nan, 6};
+    raster.values = {1, 2, 3, 4, no_data, 6};
     io::write_raster(temp / "map.tif", raster.grid, raster.placement, raster.values, {});
     const Image image = read_image(temp / "map.tif");
     CHECK(image.placed);
@@ -143,8 +143,8 @@ TEST_CASE("Bilinear sampling is exact on planes between centres, level beyond th
     CHECK(bilinear(image, 5, 4) == image.values[19]);
     CHECK(std::isnan(bilinear(image, 5.1, 2)));
     CHECK(std::isnan(bilinear(image, 2, -0.1)));
-    CHECK(std::isnan(bilinear(image, nan, 2)));
-    image.values[6] = nan;
+    CHECK(std::isnan(bilinear(image, no_data, 2)));
+    image.values[6] = no_data;
     CHECK(std::isnan(bilinear(image, 1.5, 1.5)));                       // in the void cell
     CHECK(bilinear(image, 0.9, 0.5) == Approx(2 * 0.9 - 3 * 0.5 + 7));  // beside it, on the row above
     CHECK(std::isfinite(bilinear(image, 0.9, 0.9)));                    // the others' shares raised

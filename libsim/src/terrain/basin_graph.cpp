@@ -23,7 +23,7 @@ void open_closed_pieces(Joined& joined, std::span<const Index> pit, std::span<co
     for (Index piece = 0; piece < pit.size(); ++piece) {
         if (lowest[piece] == none || piece == drained) continue;
         const Index basin = lowest[piece];
-        tree.push_back({elevation_m[pit[basin]], basin, pit[basin], outside, none});
+        tree.push_back(pass_straight_out(elevation_m, basin, pit[basin]));
     }
 }
 
@@ -49,7 +49,7 @@ Incidence passes_by_basin(const std::vector<Pass>& tree, std::size_t basins) {
 }
 
 /// The same pass seen from the other side.
-Pass reversed(const Pass& pass) { return {pass.height_m, pass.other_basin, pass.other_node, pass.basin, pass.node}; }
+Pass reversed(const Pass& pass) { return {pass.height_m, pass.low_m, pass.other_basin, pass.other_node, pass.basin, pass.node}; }
 
 SpillTree walk_from_outside(const std::vector<Pass>& tree, std::size_t basins) {
     const Incidence at = passes_by_basin(tree, basins);

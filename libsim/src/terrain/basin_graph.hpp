@@ -17,13 +17,28 @@ inline constexpr Index outside = 0;
 /// A way between two basins: the edge between two neighbouring nodes, as high as the higher of them.
 struct Pass {
     double height_m;
+    double low_m;                   ///< height of the lower of the two nodes; -infinity outside the domain
     Index basin, node;              ///< the one side
     Index other_basin, other_node;  ///< the other; `none` as node: straight out of the domain
 };
 
-/// Total order of passes, so that the tree below is unique: height, then the smaller node, then the larger.
+/// The edge between two neighbours of different basins.
+inline Pass pass_between(std::span<const double> elevation_m, Index basin, Index node, Index other_basin, Index other) {
+    const auto [low, high] = std::minmax(elevation_m[node], elevation_m[other]);
+    return {high, low, basin, node, other_basin, other};
+}
+
+/// From an outlet of the domain straight out.
+inline Pass pass_straight_out(std::span<const double> elevation_m, Index basin, Index node) {
+    return {elevation_m[node], -std::numeric_limits<double>::infinity(), basin, node, outside, none};
+}
+
+/// Total order of passes, so that the tree below is unique: height, then the lower end's height (many edges share their
+/// higher end; the lower the other end the steeper the way, and a turned terrain drains as it did), then the smaller
+/// node, then the larger.
 inline bool lower(const Pass& a, const Pass& b) {
     if (a.height_m != b.height_m) return a.height_m < b.height_m;
+    if (a.low_m != b.low_m) return a.low_m < b.low_m;
     const auto key = [](const Pass& pass) {
         return std::pair(std::min(pass.node, pass.other_node), std::max(pass.node, pass.other_node));
     };
@@ -31,7 +46,8 @@ inline bool lower(const Pass& a, const Pass& b) {
 }
 
 /// A pass higher than all others.
-inline constexpr Pass no_pass{std::numeric_limits<double>::infinity(), none, none, none, none};
+inline constexpr Pass no_pass{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), none, none,
+                              none, none};
 
 /// The lowest pass between each pair of pieces (of one or more basins), as they are offered: a hash table with open
 /// addressing.

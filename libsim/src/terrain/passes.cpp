@@ -47,17 +47,17 @@ void lowest_in_row(const Window& w, Index cols, double* height) {
     }
 }
 
-/// The pass out of an inner cell whose height is known: of neighbours as good, the one with the lower number.
+/// The pass out of an inner cell whose height is known: of neighbours as good the lowest, then that of lower number.
 Pass way_out_at(const Terrain<Grid>& terrain, std::span<const Index> basin, Index node, double height) {
     const Index here = basin[node];
+    Pass best = no_pass;
     for (const Slot slot : {5, 6, 7, 4, 0, 3, 2, 1}) {
         const Index other = terrain.topology.neighbor(node, slot);
-        const bool leads_out = basin[other] != here && basin[other] != none;
-        if (leads_out && std::max(terrain.elevation_m[node], terrain.elevation_m[other]) == height) {
-            return {height, here, node, basin[other], other};
-        }
+        if (basin[other] == here || basin[other] == none) continue;
+        const Pass pass = pass_between(terrain.elevation_m, here, node, basin[other], other);
+        if (pass.height_m == height && pass.low_m < best.low_m) best = pass;
     }
-    return no_pass;
+    return best;
 }
 
 /// Lowest passes that one block finds: those of basins whose pit lies in it straight in the common list, which nobody
@@ -108,7 +108,7 @@ void scan_inner_row(const Terrain<Grid>& terrain, std::span<const Index> basin, 
         Pass& lowest = best.of(basin[node]);
         if (height[c] <= lowest.height_m) keep_lower(lowest, way_out_at(terrain, basin, node, height[c]));
         if (terrain.boundary[node] == Boundary::open) {
-            keep_lower(lowest, {terrain.elevation_m[node], basin[node], node, outside, none});
+            keep_lower(lowest, pass_straight_out(terrain.elevation_m, basin[node], node));
         }
     }
 }
@@ -116,8 +116,8 @@ void scan_inner_row(const Terrain<Grid>& terrain, std::span<const Index> basin, 
 /// Offers the pass between two neighbours, named by basin and kept by piece.
 void offer_between(std::span<const double> elevation_m, std::span<const Index> basin, std::span<const Index> piece,
                    Index node, Index other, LowestPasses& passes) {
-    const double height = std::max(elevation_m[node], elevation_m[other]);
-    passes.offer(piece[basin[node]], piece[basin[other]], {height, basin[node], node, basin[other], other});
+    passes.offer(piece[basin[node]], piece[basin[other]],
+                 pass_between(elevation_m, basin[node], node, basin[other], other));
 }
 
 template <Topology T>
@@ -125,7 +125,7 @@ void offer_straight_out(const Terrain<T>& terrain, std::span<const Index> basin,
                         Index node, LowestPasses& passes) {
     if (!is_inside(basin[node]) || terrain.boundary[node] != Boundary::open) return;
     const Index here = piece[basin[node]];
-    if (here != outside) passes.offer(here, outside, {terrain.elevation_m[node], basin[node], node, outside, none});
+    if (here != outside) passes.offer(here, outside, pass_straight_out(terrain.elevation_m, basin[node], node));
 }
 
 /// Pieces of a row's cells; `none` stays.

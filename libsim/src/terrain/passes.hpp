@@ -21,12 +21,11 @@ inline void keep_lower(Pass& best, const Pass& offered) {
 template <Topology T>
 void offer_ways_out(const Terrain<T>& terrain, std::span<const Index> basin, Index node, Pass& best) {
     const Index here = basin[node];
-    const double height = terrain.elevation_m[node];
-    if (terrain.boundary[node] == Boundary::open) keep_lower(best, {height, here, node, outside, none});
+    if (terrain.boundary[node] == Boundary::open) keep_lower(best, pass_straight_out(terrain.elevation_m, here, node));
     terrain.topology.neighbors(node, [&](Index neighbor, double, Slot) {
         const Index there = basin[neighbor];
         if (there == none || there == here) return;
-        keep_lower(best, {std::max(height, terrain.elevation_m[neighbor]), here, node, there, neighbor});
+        keep_lower(best, pass_between(terrain.elevation_m, here, node, there, neighbor));
     });
 }
 
