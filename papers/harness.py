@@ -118,6 +118,8 @@ def _run(paper, case, tools, number, run, threads):
 
 def _execute(command):
     """Runs it; returns its largest resident memory (MiB)."""
+    if not os.path.exists(command[0]):
+        raise Failure(f"{command[0]} does not exist: ./run papers builds it, --thalweg names another")
     with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
         complaint = process.stderr.read()
         _, status, usage = os.wait4(process.pid, 0)
@@ -254,7 +256,8 @@ def readme(paper, results):
     parts = [f"# {paper.title}", paper.lead.strip()]
     parts += [section(*each) for each in judged(paper, results)]
     parts.append("Made by `./run papers --record` from `published.csv`, `results/` and `cases.py`. Columns named `seconds…` "
-                 "are wall times and `peak_mib` is memory, on the machine in `machine.csv`: they differ from run to run.")
+                 "are wall times and `peak_mib` is memory, on the machine in `machine.csv` and with the load that stands there "
+                 "(processes that wanted a processor, ours among them): they differ from run to run.")
     return "\n\n".join(parts) + "\n"
 
 

@@ -87,11 +87,8 @@ def changed_verdicts(paper, case, verdicts):
             for v in verdicts if pairs.get(v.claim) != v.word]
 
 
-def record_pages(papers, seconds):
-    """Writes machine.csv of what was run as a whole, and all pages once every case has a result."""
-    for paper in papers:
-        if paper.name in seconds:
-            record_machine(paper, seconds[paper.name])
+def record_pages(papers):
+    """Writes all pages, once every case has a result."""
     lacking = [f"{paper.name}/{case.name}" for paper in papers for case in paper.cases
                if not os.path.exists(_results_path(paper.folder, case))]
     if lacking:
@@ -101,11 +98,11 @@ def record_pages(papers, seconds):
             stream.write(text)
 
 
-def record_machine(paper, seconds):
+def record_machine(paper):
     with open("/proc/cpuinfo", encoding="utf-8") as stream:
         model = next((line.split(":")[1].strip() for line in stream if line.startswith("model name")), platform.machine())
     harness.write_rows(os.path.join(paper.folder, "machine.csv"),
-                       [{"processor": model, "threads": os.cpu_count(), "seconds": float(f"{seconds:.3g}")}])
+                       [{"processor": model, "threads": os.cpu_count(), "load_average": os.getloadavg()[0]}])
 
 
 def wanted(papers, names):
@@ -137,19 +134,20 @@ def options_of(arguments):
 
 def run(papers, options):
     tools = harness.Tools(options.thalweg, os.path.join(options.out, "work"), os.path.dirname(options.thalweg))
-    seconds, complaints = {}, []
+    complaints = []
     for paper, case in wanted(papers, options.names):
         begin = time.monotonic()
         verdicts = run_and_judge(paper, case, tools, options)
         took = time.monotonic() - begin
-        seconds[paper.name] = seconds.get(paper.name, 0) + took
         for v in verdicts:
             print(f"{paper.name}/{case.name} ({took:.1f} s): {v.claim}: {v.word} (published {v.published}, ours {v.ours})",
                   flush=True)
-        if not options.record:
+        if options.record:
+            record_machine(paper)
+        else:
             complaints += changed_verdicts(paper, case, [v for v in verdicts if not (options.quick and v.full_only)])
     if options.record:
-        record_pages(papers, seconds if not options.names else {})
+        record_pages(papers)
     return complaints
 
 

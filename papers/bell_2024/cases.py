@@ -8,6 +8,7 @@ TITLE = "Bell 2024: stream-power terrain on Delaunay meshes"
 LEAD = """
 A square of 32 768 m, m = 0.5, n = 1, k = 5.6e-7 /yr, u = 4e-4 m/yr, steps of 250 000 yr, on a laptop (2.8 GHz i7). His
 uplift image, talus angle, initial surface and threshold of convergence are not stated: what is reproduced are trends and
-exponents, and his numbers stand beside ours. `experiment.toml` says what we take instead.
+exponents, and his numbers stand beside ours. `experiment.toml` says what we take instead. Where no number of his is known
+to us, the criterion is theory's or the trend that his figure is about, and the column "published" says so.
 """
 CASES = bell_heights.CASES + bell_pictures.CASES + bell_cost.CASES

@@ -23,7 +23,7 @@ def ask(tools, *arguments):
 
 def cost_rows(tools, quick):
     """Per number of nodes: the quickest step of the later half, and the first, with the most lakes."""
-    rows = ask(tools, "cost", 10, *([50, 100, 200] if quick else [100, 200, 500, 1000, 2000]))
+    rows = ask(tools, "cost", 30, *([50, 100, 200] if quick else [100, 200, 500, 1000, 2000]))
     found = []
     for nodes in sorted(set(column(rows, "nodes"))):
         mine = select(rows, nodes=nodes)

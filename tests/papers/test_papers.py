@@ -170,6 +170,13 @@ class Running(unittest.TestCase):
         with self.assertRaisesRegex(harness.Failure, "thalweg: error: no such luck"):
             harness.run_case(paper, paper.cases[0], harness.Tools(self.program, self.out, ""), True)
 
+    def test_a_missing_program_is_one_sentence(self):
+        paper = self.paper(1)
+        with self.assertRaisesRegex(harness.Failure, "nowhere does not exist"):
+            harness.run_case(paper, paper.cases[0], harness.Tools("nowhere", self.out, ""), True)
+        with self.assertRaisesRegex(harness.Failure, "paper_x does not exist"):
+            harness.printed_rows(harness.Tools("", "", self.root), "paper_x")
+
     def test_an_unknown_case_is_told_with_the_known_ones(self):
         with self.assertRaisesRegex(harness.Failure, "no paper or case 'b'; there are: made_up, made_up/heights"):
             papers.wanted([self.paper(1)], ["b"])
