@@ -98,6 +98,24 @@ TEST_CASE(
     CHECK(heights("nothing", e, "time_yr,rate_m_per_yr\n0,0\n") < 0.01);
 }
 
+TEST_CASE("A history that goes on after the end of the run is warned of") {
+    const TempFolder temp;
+    write_text(temp / "level.csv", "time_yr,elevation_m\n0,0\n1e5,-10\n3e5,-20\n9e5,-20\n");
+    Experiment e = small_island();  // until 2e5 yr
+    e.base_level.history = temp / "level.csv";
+    std::vector<std::string> warnings;
+    const Messages messages{.progress = [](const std::string&) {},
+                            .warning = [&](const std::string& text) { warnings.push_back(text); }};
+    std::filesystem::create_directories(temp / "a");
+    simulate(e, temp / "a", messages);
+    REQUIRE(warnings.size() == 1);
+    CHECK(warnings[0].find("base_level.history changes until the year 300000") != std::string::npos);
+    e.time.max_steps = 30;
+    std::filesystem::create_directories(temp / "b");
+    simulate(e, temp / "b", messages);
+    CHECK(warnings.size() == 1);
+}
+
 TEST_CASE("A surface of noise starts on the first base level, and the outlets follow the table") {
     const TempFolder temp;
     write_text(temp / "level.csv", "elevation_m,time_yr\n700,0\n700,100000\n650,200000\n");

@@ -86,13 +86,17 @@ class Series {
         crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
         if (!place.crs_wkt.empty()) crs.importFromWkt(place.crs_wkt.c_str());
         const Axes axes = axes_of(place, crs);
+        // Not netCDF-4: deflate saves a fifth on elevations, and HDF5 ends the program badly once a disk was full.
         CPLStringList options;
-        options.SetNameValue("FORMAT", "NC4");
+        options.SetNameValue("FORMAT", "NC2");
         dataset_.reset(driver->CreateMultiDimensional(path.c_str(), nullptr, options.List()));
         if (!dataset_) return;
         const auto root = dataset_->GetRootGroup();
         describe(*root, series);
-        const auto time = root->CreateDimension("time", GDAL_DIM_TYPE_TEMPORAL, "", series.time_yr.size());
+        CPLStringList record;  // so that only one raster, and not all of them, must stay under 4 GiB
+        record.SetNameValue("UNLIMITED", "YES");
+        const auto time =
+            root->CreateDimension("time", GDAL_DIM_TYPE_TEMPORAL, "", series.time_yr.size(), record.List());
         const auto y = root->CreateDimension(axes.y_name, GDAL_DIM_TYPE_HORIZONTAL_Y, "NORTH", first.grid.rows);
         const auto x = root->CreateDimension(axes.x_name, GDAL_DIM_TYPE_HORIZONTAL_X, "EAST", first.grid.cols);
         if (!time || !y || !x) return;
@@ -101,7 +105,7 @@ class Series {
                        axes.unit.empty() ? "degrees_north" : axes.unit, "Y");
         place_on_earth(*root, x, centers(place.west, place.cell_width, first.grid.cols), axes.x_standard,
                        axes.unit.empty() ? "degrees_east" : axes.unit, "X");
-        make_elevation(*root, {time, y, x}, first.grid, place.crs_wkt.empty() ? nullptr : &crs);
+        make_elevation(*root, {time, y, x}, place.crs_wkt.empty() ? nullptr : &crs);
     }
 
     bool write(std::size_t number, const Raster& raster) {
@@ -142,14 +146,8 @@ class Series {
         attribute(*array, "axis", axis);
     }
 
-    void make_elevation(GDALGroup& root, const std::vector<DimensionPtr>& dimensions, const Grid& grid,
-                        const OGRSpatialReference* crs) {
-        CPLStringList options;
-        options.SetNameValue("COMPRESS", "DEFLATE");
-        options.SetNameValue("ZLEVEL", "4");
-        options.SetNameValue("BLOCKSIZE", fmt::format("1,{},{}", grid.rows, grid.cols).c_str());
-        elevation_ =
-            root.CreateMDArray("elevation", dimensions, GDALExtendedDataType::Create(GDT_Float64), options.List());
+    void make_elevation(GDALGroup& root, const std::vector<DimensionPtr>& dimensions, const OGRSpatialReference* crs) {
+        elevation_ = root.CreateMDArray("elevation", dimensions, GDALExtendedDataType::Create(GDT_Float64), nullptr);
         if (!elevation_) return;
         elevation_->SetUnit("m");
         elevation_->SetNoDataValue(std::numeric_limits<double>::quiet_NaN());

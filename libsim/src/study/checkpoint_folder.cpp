@@ -30,7 +30,6 @@ CheckpointFolder::CheckpointFolder(const fs::path& results, StoppedRun mode)
                         "forget it and start anew",
                         results.string(), folder_.string()));
     }
-    can_go_on_ = mode == StoppedRun::resume;
     to_be_forgotten_ = mode == StoppedRun::forget;
 }
 
@@ -66,18 +65,14 @@ void CheckpointFolder::create() {
 }
 
 std::optional<Checkpoint> CheckpointFolder::load(const std::string& identity) {
-    if (!can_go_on_) return std::nullopt;
-    Checkpoint checkpoint = load_checkpoint(state_file(), identity);
-    saved_steps_ = checkpoint.state.steps;
-    return checkpoint;
+    if (mode_ != StoppedRun::resume || !fs::exists(state_file())) return std::nullopt;
+    return load_checkpoint(state_file(), identity);
 }
 
 void CheckpointFolder::save(const evolve::SimulationState& state, const std::vector<evolve::StepRecord>& history,
                             const std::string& identity) {
     create();
     save_checkpoint(state, history, identity, state_file());
-    saved_steps_ = state.steps;
-    can_go_on_ = true;
 }
 
 fs::path CheckpointFolder::frames() {
@@ -87,14 +82,15 @@ fs::path CheckpointFolder::frames() {
 }
 
 void CheckpointFolder::results_are_written() {
-    if (at_rest_) can_go_on_ = false;
     to_be_forgotten_ = false;
+    if (at_rest_ && lock_.number >= 0) fs::remove(state_file());
 }
 
 std::string CheckpointFolder::left_behind() {
-    if (can_go_on_) return fmt::format("; --resume goes on from step {}", saved_steps_.load());
     std::error_code ignored;
-    if (lock_.number >= 0 && !to_be_forgotten_) fs::remove_all(folder_, ignored);
+    if (lock_.number < 0 || to_be_forgotten_) return "";
+    if (fs::exists(state_file(), ignored)) return "; --resume goes on from the last checkpoint";
+    fs::remove_all(folder_, ignored);
     return "";
 }
 

@@ -87,6 +87,18 @@ std::string in_words(const evolve::StepRecord& record) {
                        record.elevation_max_m, record.mean_rate_m_per_yr, record.lakes);
 }
 
+/// A history that the run does not live to see is most likely a mistake in its times.
+void warn_of_unseen_changes(const evolve::Setting& setting, double end_yr, const Messages& messages) {
+    const auto warn = [&](const char* key, const evolve::History& history) {
+        const double last = evolve::last_change_yr(history);
+        if (last <= end_yr) return;
+        messages.warning(
+            fmt::format("{} changes until the year {}, but the run ends in the year {}", key, last, end_yr));
+    };
+    warn("uplift.history", setting.uplift_factor);
+    warn("base_level.history", setting.base_level_m);
+}
+
 template <class Topology>
 void write_snapshots(const Frames& frames, const Topology& topology, const Domain& domain, const Experiment& e,
                      Index steps, const std::filesystem::path& results) {
@@ -116,6 +128,7 @@ Outcome step_through_time(const Topology& topology, const evolve::Model& model, 
     if (e.output.checkpoint_every) places.checkpoints->save(at.state, at.history, identity);
     Outcome o = outcome_of(r, at.state, std::move(at.history));
     domain.start = std::move(at.state.landscape);
+    warn_of_unseen_changes(domain.setting, o.time_yr, messages);
     if (frames) write_snapshots(*frames, topology, domain, e, o.steps, places.results);
     return o;
 }

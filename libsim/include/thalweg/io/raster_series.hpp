@@ -20,8 +20,8 @@ struct RasterSeries {
     std::string source;  ///< the program that made it
 };
 
-/// Writes them as a netCDF-4 file after the CF conventions 1.8: the variable `elevation`(time, y, x) in metres with its
-/// grid mapping, deflated, and the coordinates `time` (years since the start of the simulation), `y` and `x` of the
+/// Writes them as a netCDF-3 file (64-bit offsets) after the CF conventions 1.8: the variable `elevation`(time, y, x) in metres with its
+/// grid mapping, and the coordinates `time` (years since the start of the simulation), `y` and `x` of the
 /// cells' centres (latitude and longitude in degrees). One raster at a time is in memory. The bytes are a function of
 /// the values alone. Throws Error when it cannot be written whole: what was written is read back and compared.
 void write_netcdf(const std::filesystem::path&, const RasterSeries&);

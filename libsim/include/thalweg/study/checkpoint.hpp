@@ -83,9 +83,8 @@ class CheckpointFolder {
         ~LockFile();
     } lock_;
     bool at_rest_ = false;
-    bool to_be_forgotten_ = false;  ///< a stopped run is there, and goes as soon as this one has something to save
-    std::atomic<Index> saved_steps_ = 0;
-    std::atomic<bool> can_go_on_ = false;
+    std::atomic<bool> to_be_forgotten_ =
+        false;  ///< a stopped run is there, and goes as soon as this one has something to save
 };
 
 }  // namespace thalweg::study
