@@ -54,6 +54,15 @@ TEST_CASE("A run continued from the state after any step ends with the same numb
     }
 }
 
+TEST_CASE("Creep, sediment and divided flow hide nothing from one step to the next") {
+    const Hillslope linear{.diffusivity_m2_per_yr = 0.01},
+        limited{.diffusivity_m2_per_yr = 0.01, .critical_slope = 0.8};
+    const River laying_down{.k = 2e-5, .g = 0.7};
+    goes_on_from_any_state(plane_grid(12, 11, 100, 100), {.river = laying_down, .hillslope = linear}, 1);
+    goes_on_from_any_state(support::lattice_mesh(10, 10, 100, 0.3, 2), {.river = laying_down, .hillslope = limited}, 2);
+    goes_on_from_any_state(plane_grid(12, 11, 100, 100), {{.k = 2e-5, .flow = Flow::multiple}}, 3);
+}
+
 TEST_CASE("A run that reached its last step goes on when it is given more steps") {
     const Grid grid = plane_grid(12, 12, 100, 100);
     const Setting setting = support::island(grid, 1e-3);

@@ -33,14 +33,18 @@ k = 2e-5
 m = 0.45
 n = 1.4
 [hillslope]
-talus_angle_deg = 30
+{hillslope}
+[deposition]
+g = {g}
 [time]
 step_yr = 2e4
-max_steps = 300
+max_steps = {steps}
 convergence = 1e-9
 [output]
-snapshots_every = 60
+snapshots_every = 25
 """
+PLAIN = {"hillslope": "talus_angle_deg = 30", "g": 0, "steps": 300}
+CREEP = {"hillslope": "diffusivity_m2_per_yr = 0.01\ncritical_slope = 1", "g": 0.5, "steps": 60}
 UPLIFT = "time_yr,factor\n0,1\n2e6,1\n3e6,2\n"
 LEVEL = "time_yr,elevation_m\n0,0\n1e6,0\n1e6,-40\n5e6,20\n"
 
@@ -74,7 +78,7 @@ class Resume(unittest.TestCase):
         (self.here / "uplift.csv").write_text(UPLIFT)
         (self.here / "level.csv").write_text(LEVEL)
         self.experiment = self.here / "experiment.toml"
-        self.experiment.write_text(EXPERIMENT.format(mesh="raster"))
+        self.experiment.write_text(EXPERIMENT.format(mesh="raster", **PLAIN))
 
     def done(self, *arguments):
         result = subprocess.run(command(self.experiment, *arguments), capture_output=True, text=True, timeout=600)
@@ -120,8 +124,8 @@ class Resume(unittest.TestCase):
         self.assertTrue(state.exists())
         return state
 
-    def killed_again_and_again(self, mesh, seed):
-        self.experiment.write_text(EXPERIMENT.format(mesh=mesh))
+    def killed_again_and_again(self, mesh, seed, processes):
+        self.experiment.write_text(EXPERIMENT.format(mesh=mesh, **processes))
         start = time.monotonic()
         self.done("--out", self.here / "whole")
         whole = time.monotonic() - start
@@ -140,10 +144,13 @@ class Resume(unittest.TestCase):
         self.assertEqual([p.name for p in self.here.glob(".*.partial-*")], [])
 
     def test_a_raster_run_killed_again_and_again_ends_with_the_same_bytes(self):
-        self.killed_again_and_again("raster", 1)
+        self.killed_again_and_again("raster", 1, PLAIN)
 
     def test_a_tin_run_killed_again_and_again_ends_with_the_same_bytes(self):
-        self.killed_again_and_again("tin", 2)
+        self.killed_again_and_again("tin", 2, PLAIN)
+
+    def test_a_run_with_creep_and_sediment_killed_again_and_again_ends_with_the_same_bytes(self):
+        self.killed_again_and_again("tin", 3, CREEP)
 
     def test_an_interrupted_run_says_how_it_can_go_on(self):
         out = ("--out", self.here / "out", "--set", "output.checkpoint_every=5", "--set", "time.max_steps=100000")
