@@ -300,13 +300,16 @@ TEST_CASE("Experiments that contradict themselves are refused with a sentence") 
     CHECK(refusal([](Experiment& e) { e.domain.size_m.clear(); }).find("domain.size_m") != std::string::npos);
     CHECK(refusal([](Experiment& e) { e.domain.nodes.reset(); }).find("domain.nodes") != std::string::npos);
     CHECK(refusal([](Experiment& e) { e.domain.spacing_m = 100; }).find("one of them") != std::string::npos);
-    CHECK(refusal([](Experiment& e) { e.domain.dem = "x.tif"; }).find("x.tif") != std::string::npos);
+    CHECK(refusal([](Experiment& e) {
+              e.domain.dem = "x.tif";
+              e.domain.size_m.clear();
+          }).find("x.tif") != std::string::npos);
     CHECK(refusal([](Experiment& e) { e.outlets = Outlets{OutletRule::dem}; }).find("domain.dem") != std::string::npos);
     CHECK(refusal([](Experiment& e) {
               e.domain.mesh = MeshKind::raster;
               e.domain.nodes = 16;
               e.domain.size_m = {1, 1000};
-          }).find("no inside") != std::string::npos);
+          }).find("whole rows") != std::string::npos);
     Experiment study;
     CHECK(error_of([&] { run_study(study, Figures::leave_out, temp / "", {}); }).find("study.dem") !=
           std::string::npos);

@@ -56,8 +56,8 @@ struct Run {
     std::optional<HillslopeSolver> creep = {};
     std::vector<double> before_m = {};  // heights before the step; only with creep
     SedimentBuffers sediment = {};      // only with deposition
-    Setting scaled = {};    ///< the setting of one step, where uplift has a history
-    double settled_yr = 0;  ///< from then on nothing that drives the landscape changes
+    Setting scaled = {};                // the setting of one step, where uplift has a history
+    double settled_yr = 0;              // from then on nothing that drives the landscape changes
 };
 
 /// The setting of the step that begins now: the uplift's mean over the step, so that the volume uplifted is the
@@ -85,6 +85,8 @@ template <Topology T>
 Run<T> make_run(const T& topology, const Model& model, const Setting& setting, const TimeOptions& options) {
     Run<T> run{topology, model, setting, options, SlopeSolver(model.river.n)};
     if (model.hillslope.diffusivity_m2_per_yr > 0) run.creep.emplace(topology, model.hillslope, setting);
+    run.settled_yr = std::max(last_change_yr(setting.uplift_factor), last_change_yr(setting.base_level_m));
+    if (!setting.uplift_factor.value.empty()) run.scaled = setting;
     return run;
 }
 
@@ -146,8 +148,8 @@ StepReport step(Run<T>& run, SimulationState& state) {
     const River& river = run.model.river;
     const double start_yr = landscape.time_yr;
     const Setting& setting = setting_of_step(run, start_yr);
-    if (run.creep) run.before_m = landscape.elevation_m;
     move_base_level(setting, start_yr + run.options.step_yr, landscape);
+    if (run.creep) run.before_m = landscape.elevation_m;
     drain_into(run.topology, landscape, setting, river, state.exchange.frozen, run.drainage, run.buffers);
     const StepSums sums = with_edges(run.topology, [&](const auto& edges) {
         if (river.g > 0) {
@@ -226,8 +228,6 @@ SimulationResult continued(const T& topology, const Model& model, const Setting&
                            SimulationState& state, const Observer& observer) {
     check(topology, model, setting, options, state.landscape);
     Run<T> run = make_run(topology, model, setting, options);
-    run.settled_yr = std::max(last_change_yr(setting.uplift_factor), last_change_yr(setting.base_level_m));
-    if (!setting.uplift_factor.value.empty()) run.scaled = setting;
     while (state.steps < options.max_steps && !state.converged) {
         const auto start = Clock::now();
         step(run, state);

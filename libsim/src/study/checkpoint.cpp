@@ -113,10 +113,10 @@ void fields(A& archive, T& record) {
 template <class A, class T>
 requires std::is_same_v<std::remove_const_t<T>, evolve::SimulationState>
 void fields(A& archive, T& state) {
-    auto& [landscape, steps, converged, max_rate, mean_rate, newton, sediment, unconverged_sediment, hillslope,
-           unconverged_hillslope, mass, calm, exchange, slackening] = state;
-    archive(landscape, steps, converged, max_rate, mean_rate, newton, sediment, unconverged_sediment, hillslope,
-            unconverged_hillslope, mass, calm, exchange, slackening);
+    auto& [landscape, steps, converged, max_rate, mean_rate, newton, sediment, sediment_open, hillslope, hillslope_open,
+           mass, calm, exchange, slackening] = state;
+    archive(landscape, steps, converged, max_rate, mean_rate, newton, sediment, sediment_open, hillslope,
+            hillslope_open, mass, calm, exchange, slackening);
 }
 
 std::string program() {
