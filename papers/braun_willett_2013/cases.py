@@ -137,9 +137,9 @@ def seeds_draw(rows, _, __):
             axes.plot(column(mine, "seed"), column(mine, name), **{**look, "linestyle": "none"}, label=f"dt = {number(step / 1e3)} kyr")
     left.set_ylabel("mean height at rest (m)")
     right.set_ylabel("relief at rest (m)")
-    for axes in (left, right):
+    for axes, name in ((left, "mean_m"), (right, "relief_m")):
         axes.set_xlabel("seed")
-        axes.set_ylim(0, None)
+        axes.set_ylim(0, 1.15 * max(column(rows, name)))
         axes.legend(loc="lower right")
     return drawing
 
