@@ -27,15 +27,18 @@ void run(benchmark::State& state, const Topology& topology, const std::vector<Bo
     per_item(state, static_cast<double>(topology.size()) * steps);
 }
 
-void raster_steps(benchmark::State& state) {
+void raster(benchmark::State& state, evolve::Flow flow) {
     const auto size = static_cast<Index>(state.range(0));
     const ThreadLimit limit(static_cast<int>(state.range(1)));
     const Grid grid = plane_grid(size, size, 100, 100);
     auto boundary = terrain::data_edge(grid, std::vector<double>(grid.size(), 0.0));
     for (Boundary& b : boundary) b = b == Boundary::open ? Boundary::base_level : Boundary::interior;
     const double m = 0.01 * static_cast<double>(state.range(2)), n = 0.1 * static_cast<double>(state.range(3));
-    run(state, grid, boundary, {.river = {.k = 2e-5, .m = m, .n = n}});
+    run(state, grid, boundary, {.river = {.k = 2e-5, .m = m, .n = n, .flow = flow}});
 }
+
+void raster_steps(benchmark::State& state) { raster(state, evolve::Flow::single); }
+void raster_steps_divided(benchmark::State& state) { raster(state, evolve::Flow::multiple); }
 BENCHMARK(raster_steps)
     ->ArgNames({"size", "threads", "100m", "10n"})
     ->Args({1000, 1, 50, 10})
@@ -43,6 +46,14 @@ BENCHMARK(raster_steps)
     ->Args({1000, 1, 40, 10})
     ->Args({1000, 1, 50, 15})
     ->Args({2000, 1, 50, 10})
+    ->Unit(benchmark::kMillisecond)
+    ->Iterations(1);
+
+BENCHMARK(raster_steps_divided)
+    ->ArgNames({"size", "threads", "100m", "10n"})
+    ->Args({1000, 1, 50, 10})
+    ->Args({1000, 2, 50, 10})
+    ->Args({1000, 1, 50, 15})
     ->Unit(benchmark::kMillisecond)
     ->Iterations(1);
 

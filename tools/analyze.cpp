@@ -10,16 +10,21 @@ namespace {
 const std::map<std::string, study::Conditioning> conditionings{
     {"fill", study::Conditioning::fill}, {"carve", study::Conditioning::carve}, {"none", study::Conditioning::none}};
 
+const std::map<std::string, study::Routing> routings{
+    {"d8", study::Routing::d8}, {"dinf", study::Routing::dinf}, {"mfd", study::Routing::mfd}};
+
 struct Options {
     CommonOptions common;
     DemOptions dem;
     std::string file, theta, knickpoint_prominence;
     std::string conditioning = "fill";
+    std::string routing = "d8";
 };
 
 void run(const Options& options) {
     study::MeasureOptions measure = measure_options(options.dem);
     measure.conditioning = conditionings.at(options.conditioning);
+    measure.routing = routings.at(options.routing);
     if (!options.theta.empty()) measure.theta = parse_number("--theta", options.theta, Sign::positive);
     if (!options.knickpoint_prominence.empty()) {
         measure.knickpoint_prominence_m =
@@ -41,6 +46,11 @@ void add_analyze(CLI::App& app) {
         ->add_option("--condition", options->conditioning,
                      "what becomes of pits: fill, carve or none (slopes are measured on carved profiles always)")
         ->check(CLI::IsMember({"fill", "carve", "none"}))
+        ->capture_default_str();
+    command
+        ->add_option("--routing", options->routing,
+                     "how water is followed for the drainage area: d8, dinf or mfd (the network follows d8 always)")
+        ->check(CLI::IsMember({"d8", "dinf", "mfd"}))
         ->capture_default_str();
     command->add_option("--theta", options->theta, "concavity for chi and ksn [default: 0.45]");
     command->add_option("--knickpoint-prominence-m", options->knickpoint_prominence,

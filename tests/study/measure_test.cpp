@@ -12,6 +12,11 @@
 #include "support/temp_folder.hpp"
 #include "support/terrains.hpp"
 #include "thalweg/study/analyze.hpp"
+#include "thalweg/terrain/accumulate.hpp"
+#include "thalweg/terrain/d_infinity.hpp"
+#include "thalweg/terrain/flats.hpp"
+#include "thalweg/terrain/lakes.hpp"
+#include "thalweg/terrain/route.hpp"
 
 using namespace thalweg;
 using namespace thalweg::study;
@@ -293,5 +298,45 @@ TEST_CASE("The slopes of the summary are those of the carved profiles above the 
         CHECK(point.slope == Approx(0.2).epsilon(1e-12));
         CHECK(point.area_m2 >= 600);
         CHECK(point.area_m2 <= 6000);
+    }
+}
+
+TEST_CASE("Another routing writes its own area and begins channels by it, and leaves directions and course alone") {
+    const TempFolder temp;
+    const Raster dem = raster_of(support::with_holes(support::noise_terrain(40, 50, 3), 0.01, 3));
+    const auto boundary = terrain::data_edge(dem.grid, dem.values);
+    const std::vector<double> filled = terrain::fill(dem.grid, dem.values, boundary);
+    FlowDirections single = terrain::route(dem.grid, filled, boundary);
+    terrain::resolve_flats(dem.grid, filled, boundary, single);
+    const auto areas = terrain::cell_areas(dem.grid);
+    MeasureOptions options = channels_from(30);
+    options.edge_basins = terrain::EdgeBasins::keep;
+    const Json d8 = analyzed(dem, options, temp / "d8");
+    CHECK(d8["routing"] == "d8");
+    for (const auto& [routing, name, flow] :
+         {std::tuple{Routing::mfd, "mfd", terrain::multiple_flow(dem.grid, filled, single)},
+          std::tuple{Routing::dinf, "dinf", terrain::d_infinity(dem.grid, filled, single)}}) {
+        options.routing = routing;
+        const Json s = analyzed(dem, options, temp / name);
+        CHECK(s["routing"] == name);
+        CHECK(test::bytes_of(temp / name / "flow_direction.tif") == test::bytes_of(temp / "d8/flow_direction.tif"));
+        const std::vector<double> expected = terrain::accumulate(flow, areas);
+        const std::vector<double> found = io::read_raster(temp / name / "drainage_area.tif").raster.values;
+        const std::vector<double> orders = io::read_raster(temp / name / "strahler.tif").raster.values;
+        std::vector<int> channel(expected.size(), 0);
+        for (Index start = 0; start < dem.grid.size(); ++start) {
+            if (std::isnan(dem.values[start])) continue;
+            CHECK(found[start] == expected[start]);
+            if (expected[start] < 30) continue;
+            for (Index node = start;; node = dem.grid.neighbor(node, single[node])) {
+                channel[node] = 1;
+                if (single[node] == no_flow) break;
+            }
+        }
+        for (Index node = 0; node < dem.grid.size(); ++node) {
+            if (!std::isnan(dem.values[node])) CHECK((orders[node] > 0) == (channel[node] == 1));
+        }
+        CHECK(s["channels"]["cells"] != d8["channels"]["cells"]);
+        CHECK(s["basins"][0]["area_m2"] == d8["basins"][0]["area_m2"]);
     }
 }

@@ -84,6 +84,29 @@ TEST_CASE("A steady landscape fitted on its nodes gives back k and m") {
     }
 }
 
+TEST_CASE("A landscape of divided flow fitted on its nodes gives back k and m") {
+    const TempFolder temp;
+    for (const MeshKind mesh : {MeshKind::tin, MeshKind::raster}) {
+        Experiment e = island(mesh, 1.2, 0.5, 2000);
+        e.river.flow = evolve::Flow::multiple;
+        e.river.flow_exponent = 1.5;
+        e.time.solver = Solver::implicit;
+        e.time.step_yr = 2e5;
+        e.time.convergence = 1e-6;
+        const std::string name = std::to_string(static_cast<int>(mesh));
+        const Json summary = simulated(e, temp / name);
+        CHECK(summary["terrain"]["routing"] == "multiple");
+        CHECK(std::abs(summary["mass_balance"]["relative_residual"].get<double>()) < 1e-9);
+        CHECK(summary["terrain"]["channels"]["links"].get<int>() > 20);
+        const Json f = fitted(temp / name, temp / (name + "fit"), 1.2, FitFrom::nodes);
+        CHECK(f["m"].get<double>() == Approx(0.5).margin(1e-3));
+        CHECK(k_ratio(f, e) == Approx(1).margin(0.01));
+    }
+    Experiment steady = island(MeshKind::raster, 1, 0.5, 400);
+    steady.river.flow = evolve::Flow::multiple;
+    CHECK(error_of([&] { simulated(steady, temp / "steady"); }).find("implicit") != std::string::npos);
+}
+
 TEST_CASE("A steady landscape shows its concavity and steepness in chi, on its nodes and as a DEM") {
     const TempFolder temp;
     for (const MeshKind mesh : {MeshKind::tin, MeshKind::raster}) {

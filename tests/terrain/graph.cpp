@@ -160,6 +160,24 @@ TEST_CASE("the carved surface is the lowest height upstream, and falls along eve
     }
 }
 
+TEST_CASE("the largest value upstream is what walking down from every cell finds") {
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        for (const TestTerrain& terrain : assorted_terrains(seed)) {
+            const std::vector<double>& z = terrain.elevation_m;
+            const FlowDirections directions = drained_directions(terrain.grid, z, data_edge(terrain.grid, z));
+            const std::vector<double> values = noise_terrain(terrain.grid.rows, terrain.grid.cols, 77).elevation_m;
+            std::vector<double> largest = values;
+            for (Index start = 0; start < terrain.grid.size(); ++start) {
+                for (Index node = start; directions[node] != no_flow;) {
+                    node = terrain.grid.neighbor(node, directions[node]);
+                    largest[node] = std::max(largest[node], values[start]);
+                }
+            }
+            REQUIRE(largest_upstream(flow_graph(terrain.grid, z, directions), values) == largest);
+        }
+    }
+}
+
 TEST_CASE("graph, area and carved surface are the same bytes on one thread and on two") {
     const TestTerrain terrain = noise_terrain(300, 300, 21);
     const auto boundary = data_edge(terrain.grid, terrain.elevation_m);

@@ -40,6 +40,11 @@ Json conditioning_json(const ConditioningReport& c, Conditioning method) {
             {"flat_cells", c.flat_cells}};
 }
 
+const char* routing_name(Routing routing) {
+    constexpr std::array names{"d8", "dinf", "mfd"};
+    return names[static_cast<std::size_t>(routing)];
+}
+
 /// ESRI's codes: 1 << slot, 0 where water leaves, 255 without data.
 std::vector<double> esri_codes(const FlowDirections& directions, std::span<const double> elevation_m) {
     std::vector<double> codes(directions.size());
@@ -59,7 +64,8 @@ void write_rasters(const Raster& dem, const RasterMeasurement& m, const std::fil
     write("filled.tif", m.terrain.elevation_m, {.nodata = {}, .description = "conditioned elevation (m)"});
     write("drainage_area.tif",
           [&] {
-              std::vector<double> area = m.terrain.drainage_area_m2;
+              const bool divided = !m.terrain.divided_area_m2.empty();
+              std::vector<double> area = divided ? m.terrain.divided_area_m2 : m.terrain.drainage_area_m2;
               for (std::size_t i = 0; i < area.size(); ++i) {
                   if (std::isnan(dem.values[i])) area[i] = dem.values[i];
               }
@@ -117,6 +123,7 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
         if (note.starts_with("channels:")) messages.warning(note);
     }
     summary["measured_on"] = "raster";
+    summary["routing"] = routing_name(options.routing);
     summary["slope_area"]["segment_drop_m"] = m.segment_drop_m;
     summary["slope_area"]["vertical_quantum_m"] = m.vertical_quantum_m;
     summary["notes"] = notes;

@@ -10,8 +10,10 @@
 
 #include "thalweg/core/error.hpp"
 #include "thalweg/terrain/accumulate.hpp"
+#include "thalweg/terrain/d_infinity.hpp"
 #include "thalweg/terrain/flats.hpp"
 #include "thalweg/terrain/lakes.hpp"
+#include "thalweg/terrain/multiple_flow.hpp"
 #include "thalweg/terrain/route.hpp"
 
 namespace thalweg::study {
@@ -194,6 +196,22 @@ double relief_of(const std::vector<double>& elevation_m) {
     return *highest - *lowest;
 }
 
+/// Area that decides where channels begin. Divided flow may lose water along a path of the graph, a channel that has
+/// begun goes on.
+std::vector<double> initiation_area(const RoutedTerrain& terrain) {
+    if (terrain.divided_area_m2.empty()) return terrain.drainage_area_m2;
+    return terrain::largest_upstream(terrain.graph, terrain.divided_area_m2);
+}
+
+/// Drainage area by the routing that was asked for, on the surface before it was carved; empty for D8.
+std::vector<double> divided_area(const Grid& grid, std::span<const double> surface, const RasterMeasurement& m,
+                                 Routing routing) {
+    if (routing == Routing::d8) return {};
+    const terrain::MultipleFlow flow = routing == Routing::dinf ? terrain::d_infinity(grid, surface, m.directions)
+                                                                : terrain::multiple_flow(grid, surface, m.directions);
+    return terrain::accumulate(flow, m.terrain.cell_area_m2);
+}
+
 std::vector<Boundary> boundary_of(const Raster& raster, const MeasureOptions& options) {
     if (!options.catchment_outlet) return terrain::data_edge(raster.grid, raster.values);
     std::vector<Boundary> boundary(raster.grid.size(), Boundary::interior);
@@ -228,8 +246,9 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
 
     Statistics s;
     s.hypsometry = terrain::hypsometry(ground_m, terrain.cell_area_m2);
-    const auto all_channels = channel::channels_by_area(terrain.drainage_area_m2, threshold);
-    const auto channels = channel::channels_by_area(terrain.drainage_area_m2, threshold, used);
+    const std::vector<double> initiation_area_m2 = initiation_area(terrain);
+    const auto all_channels = channel::channels_by_area(initiation_area_m2, threshold);
+    const auto channels = channel::channels_by_area(initiation_area_m2, threshold, used);
     s.strahler_of = channel::strahler_orders(terrain.graph, channels);
     s.shreve_of = channel::shreve_magnitudes(terrain.graph, channels);
     s.network = channel::stream_network(terrain.graph, channels, terrain.drainage_area_m2, terrain.elevation_m);
@@ -294,6 +313,7 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
     m.terrain.graph = terrain::flow_graph(raster.grid, surface, m.directions);
     m.terrain.cell_area_m2 = carved.cell_area_m2;
     m.terrain.drainage_area_m2 = terrain::accumulate(m.terrain.graph, m.terrain.cell_area_m2);
+    m.terrain.divided_area_m2 = divided_area(raster.grid, surface, m, options.routing);
     m.terrain.complete = terrain::complete_catchments(raster.grid, m.terrain.graph, boundary);
     if (options.conditioning == Conditioning::carve) surface = terrain::carve(m.terrain.graph, surface);
     report_changes(raster, surface, m.conditioning);

@@ -12,8 +12,13 @@ namespace {
 evolve::River river_of(const Experiment& e) {
     if (!e.river.k) throw Error("river.k (erodibility) is needed");
     if (!e.river.m) throw Error("river.m (exponent of the drainage area) is needed");
-    evolve::River river{.k = *e.river.k, .m = *e.river.m, .n = e.river.n, .receiver = e.river.receiver};
-    river.g = e.deposition.g;
+    evolve::River river{.k = *e.river.k,
+                        .m = *e.river.m,
+                        .n = e.river.n,
+                        .receiver = e.river.receiver,
+                        .flow = e.river.flow,
+                        .flow_exponent = e.river.flow_exponent,
+                        .g = e.deposition.g};
     if (e.hillslope.talus_angle_deg) {
         const double angle = *e.hillslope.talus_angle_deg;
         if (angle < 90) river.talus_slope = std::tan(angle * std::numbers::pi / 180);

@@ -287,6 +287,11 @@ const Words<terrain::Receiver>& words(terrain::Receiver) {
     return all;
 }
 
+const Words<evolve::Flow>& words(evolve::Flow) {
+    static const Words<evolve::Flow> all{{"single", evolve::Flow::single}, {"multiple", evolve::Flow::multiple}};
+    return all;
+}
+
 Experiment read_experiment(const std::filesystem::path& path, const std::vector<std::string>& overrides) {
     if (!std::filesystem::is_regular_file(path)) {
         throw Error(fmt::format("no experiment file '{}'", path.string()));

@@ -69,22 +69,43 @@ Outcome solve_directly(const Topology& topology, const evolve::River& river, con
     return o;
 }
 
+/// Rain-weighted area of the trees of single flow.
+std::vector<double> rain_along(const RoutedTerrain& terrain, const evolve::Setting& setting) {
+    std::vector<double> rain = terrain.cell_area_m2;
+    for (std::size_t node = 0; node < rain.size(); ++node) rain[node] *= setting.rainfall[node];
+    return terrain::accumulate(terrain.graph, rain);
+}
+
+/// Area and slope of the nodes that the talus limit leaves to the river.
+std::vector<channel::SlopeAreaPoint> river_slopes(const Finished& f) {
+    std::vector<channel::SlopeAreaPoint> points;
+    for (std::size_t node = 0; node < f.law_slope.size(); ++node) {
+        const bool falls = f.law_slope[node] > 0 && f.law_area_m2[node] > 0;
+        if (falls && !f.talus_limited[node]) points.push_back({f.law_area_m2[node], f.law_slope[node]});
+    }
+    return points;
+}
+
 template <class Topology>
 Finished finish(const Topology& topology, const evolve::Model& model, const Domain& domain, const Experiment& e) {
     Finished f;
     const evolve::River& river = model.river;
-    const evolve::Drainage drainage = evolve::drain(topology, domain.start, domain.setting, river.receiver);
+    const evolve::Drainage drainage = evolve::drain(topology, domain.start, domain.setting, river);
     f.lakes = drainage.lakes;
     f.talus_limited = evolve::at_talus_limit(topology, drainage, river, domain.start);
     f.terrain.graph = terrain::flow_graph(topology, domain.start.elevation_m, drainage.directions);
     f.terrain.elevation_m = domain.start.elevation_m;
     f.terrain.cell_area_m2 = terrain::cell_areas(topology);
+    f.law_area_m2 = drainage.area_m2;
+    f.law_slope = evolve::slopes_along_flow(topology, drainage, river, domain.start);
     f.terrain.drainage_area_m2 = drainage.area_m2;
+    if (river.flow == evolve::Flow::multiple) {
+        f.terrain.divided_area_m2 = drainage.area_m2;
+        f.terrain.drainage_area_m2 = rain_along(f.terrain, domain.setting);
+    }
     f.terrain.complete.assign(topology.size(), 1);
     f.terrain.offset_m = channel::offsets(topology);
-    std::vector<std::uint8_t> free(f.talus_limited);
-    for (std::uint8_t& flag : free) flag = !flag;
-    f.river_slopes = channel::node_slopes(f.terrain.graph, f.terrain.drainage_area_m2, f.terrain.elevation_m, free);
+    f.river_slopes = river_slopes(f);
     MeasureOptions options;
     options.channel_area_m2 = e.study.channel_area_m2;
     f.statistics = measure(f.terrain, f.terrain.elevation_m, options, f.river_slopes);
@@ -157,6 +178,7 @@ Json summary_json(const Domain& domain, const Outcome& o, const Finished& f, con
                  {"mass_balance", mass_json(o, notes)}};
     summary["terrain"] = terrain_json(input, f.statistics, position, nullptr, notes);
     summary["terrain"]["measured_on"] = "mesh";
+    summary["terrain"]["routing"] = f.terrain.divided_area_m2.empty() ? "single" : "multiple";
     summary["notes"] = notes;
     return summary;
 }

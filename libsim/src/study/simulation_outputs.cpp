@@ -18,12 +18,9 @@ Table node_table(const Finished& f) {
     std::vector<double> area, slope;
     std::vector<std::int64_t> limited;
     for (Index node = 0; node < f.terrain.graph.size(); ++node) {
-        const Index receiver = f.terrain.graph.receiver[node];
-        if (receiver == none) continue;
-        const double drop = f.terrain.elevation_m[node] - f.terrain.elevation_m[receiver];
-        if (!(drop > 0)) continue;
-        area.push_back(f.terrain.drainage_area_m2[node]);
-        slope.push_back(drop / f.terrain.graph.length[node]);
+        if (!(f.law_slope[node] > 0)) continue;
+        area.push_back(f.law_area_m2[node]);
+        slope.push_back(f.law_slope[node]);
         limited.push_back(f.talus_limited[node]);
     }
     return {.name = "slope_area_nodes",
@@ -100,7 +97,7 @@ Heightfield heightfield(const Grid& grid, const Domain& domain, const Finished& 
     if (e.output.resolution) {
         throw Error("output.resolution does not apply to a raster mesh: it is written at its own cells");
     }
-    Heightfield h{{grid, domain.placement, f.terrain.elevation_m}, f.terrain.drainage_area_m2, f.statistics.basin_of};
+    Heightfield h{{grid, domain.placement, f.terrain.elevation_m}, f.law_area_m2, f.statistics.basin_of};
     for (Index node = 0; node < grid.size(); ++node) {
         if (std::isnan(f.terrain.elevation_m[node])) h.drainage_area_m2[node] = nan;
     }
@@ -113,7 +110,7 @@ Heightfield heightfield(const Mesh& mesh, const Domain& domain, const Finished& 
     h.elevation = surface::covering_raster(mesh, e.output.resolution.value_or(usual_resolution));
     interpolate(mesh, f.terrain.elevation_m, e, h.elevation);
     const std::vector<Index> node = surface::nearest_node(mesh, h.elevation);
-    h.drainage_area_m2 = pick(f.terrain.drainage_area_m2, node, nan);
+    h.drainage_area_m2 = pick(f.law_area_m2, node, nan);
     h.basin_of = pick(f.statistics.basin_of, node, none);
     Placement& place = h.elevation.placement;
     place.crs_wkt = domain.placement.crs_wkt;

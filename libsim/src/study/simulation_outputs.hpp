@@ -34,6 +34,8 @@ struct Outcome {
 /// The finished landscape, routed once more, with all that is written about it.
 struct Finished {
     RoutedTerrain terrain;
+    std::vector<double> law_area_m2;  ///< area and slope as the river's law sees them, divided where flow is
+    std::vector<double> law_slope;    ///< NaN without receiver
     std::vector<std::uint8_t> talus_limited;
     Index lakes = 0;
     std::vector<channel::SlopeAreaPoint> river_slopes;

@@ -84,4 +84,14 @@ std::vector<double> carve(const FlowGraph& graph, std::span<const double> elevat
     return carved;
 }
 
+std::vector<double> largest_upstream(const FlowGraph& graph, std::span<const double> values) {
+    check_sizes(graph.size(), values.size(), values.size());
+    std::vector<double> largest(values.begin(), values.end());
+    for (const Index node : std::views::reverse(graph.order)) {
+        const Index receiver = graph.receiver[node];
+        if (receiver != none) largest[receiver] = std::max(largest[receiver], largest[node]);
+    }
+    return largest;
+}
+
 }  // namespace thalweg::terrain

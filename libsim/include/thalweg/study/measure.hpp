@@ -29,8 +29,16 @@ enum class Conditioning {
     none    ///< they keep their water
 };
 
+/// How water is followed for the drainage area. The network's cells are joined by D8 always.
+enum class Routing {
+    d8,    ///< all to the neighbour of steepest descent
+    dinf,  ///< D∞ (Tarboton 1997): to the two that enclose the steepest facet's direction
+    mfd    ///< to all lower neighbours, by slope to the power of 1.1 (Freeman 1991)
+};
+
 struct MeasureOptions {
     Conditioning conditioning = Conditioning::fill;
+    Routing routing = Routing::d8;
     std::optional<double> channel_area_m2;  ///< default: 0.1 % of the area, rounded to 1-2-5
     terrain::EdgeBasins edge_basins = terrain::EdgeBasins::drop;
     std::optional<Index> catchment_outlet{};  ///< the raster is one catchment that leaves here: its
@@ -44,9 +52,10 @@ struct RoutedTerrain {
     terrain::FlowGraph graph;
     std::vector<double> elevation_m;  ///< on which the flow falls (filled or carved); NaN: no data
     std::vector<double> cell_area_m2;
-    std::vector<double> drainage_area_m2;
-    std::vector<std::uint8_t> complete;  ///< 1 where the whole upslope area is known
-    channel::OffsetOf offset_m;          ///< from node to node; empty: angles are not known
+    std::vector<double> drainage_area_m2;   ///< of the graph's trees
+    std::vector<double> divided_area_m2{};  ///< where flow divides, along that flow; else empty
+    std::vector<std::uint8_t> complete;     ///< 1 where the whole upslope area is known
+    channel::OffsetOf offset_m;             ///< from node to node; empty: angles are not known
 };
 
 struct BasinStatistics {

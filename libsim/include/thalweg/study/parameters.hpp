@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "thalweg/core/index.hpp"
+#include "thalweg/evolve/river.hpp"
 #include "thalweg/evolve/uplift.hpp"
 #include "thalweg/terrain/route.hpp"
 
@@ -50,6 +51,8 @@ struct Experiment {
         std::optional<double> m;
         double n = 1;
         terrain::Receiver receiver = terrain::Receiver::steepest;
+        evolve::Flow flow = evolve::Flow::single;
+        double flow_exponent = 1.1;
     } river;
     struct {
         NoiseKind noise = NoiseKind::perlin;
@@ -120,6 +123,7 @@ const Words<MeshFile>& words(MeshFile);
 const Words<FitMethod>& words(FitMethod);
 const Words<evolve::Pattern>& words(evolve::Pattern);
 const Words<terrain::Receiver>& words(terrain::Receiver);
+const Words<evolve::Flow>& words(evolve::Flow);
 
 /// Calls visit(field, member) for every parameter, in the order of the file.
 template <class AnyExperiment, class Visit>
@@ -151,6 +155,9 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"river.m", "", "exponent of the drainage area; simulate needs it, a study fits it", 0, 5}, e.river.m);
     visit(Field{"river.n", "", "exponent of the slope", 0.3, 5}, e.river.n);
     visit(Field{"river.receiver", "", "neighbour that takes the water"}, e.river.receiver);
+    visit(Field{"river.flow", "", "all water to one receiver, or divided among all lower neighbours"}, e.river.flow);
+    visit(Field{"river.flow_exponent", "", "exponent of the slopes in the shares of multiple flow", 0, 1000, true},
+          e.river.flow_exponent);
     visit(Field{"initial.noise", "", "roughness of the initial surface"}, e.initial.noise);
     visit(Field{"initial.amplitude_m", "m", "height of that roughness", 0}, e.initial.amplitude_m);
     visit(Field{"hillslope.talus_angle_deg", "degrees", "steepest stable slope; absent: no limit", 0, 90, true},

@@ -20,4 +20,8 @@ std::vector<double> cell_areas(const Mesh&);
 /// without ever having been filled (breaching: what stands in the way of lower water is cut through).
 std::vector<double> carve(const FlowGraph&, std::span<const double> elevation_m);
 
+/// Largest value at or upstream of each node: what it takes for a threshold, once passed, to stay passed downstream.
+/// Nodes without data keep theirs.
+std::vector<double> largest_upstream(const FlowGraph&, std::span<const double> values);
+
 }  // namespace thalweg::terrain
