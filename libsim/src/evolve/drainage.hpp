@@ -41,31 +41,6 @@ void collect_rain(const Edges& edges, const std::vector<double>& rainfall, std::
 /// Sweeps jump about in memory, but the list says where they will be: this many nodes ahead are asked for early.
 inline constexpr std::size_t ahead = 24;
 
-/// Rainfall-weighted area of every node and all upstream of it along divided flow, donors added in the order of the
-/// list. Nodes without data keep 0.
-template <class Edges>
-void accumulate_rain(const Edges& edges, const std::vector<double>& rainfall, const terrain::MultipleFlow& flow,
-                     std::vector<double>& area_m2) {
-    area_m2.assign(flow.size(), 0.0);
-    const std::vector<Index>& order = flow.order;
-    for (std::size_t at = order.size(); at-- > 0;) {
-        if (at >= 2 * ahead) __builtin_prefetch(&flow.offset[order[at - 2 * ahead]]);
-        if (at >= ahead) {
-            const Index later = order[at - ahead];
-            __builtin_prefetch(&area_m2[later]);
-            __builtin_prefetch(&rainfall[later]);
-            __builtin_prefetch(&flow.receiver[flow.offset[later]]);
-            __builtin_prefetch(&flow.share[flow.offset[later]]);
-        }
-        const Index node = order[at];
-        const double area = area_m2[node] + edges.area(node) * rainfall[node];
-        area_m2[node] = area;
-        for (Index to = flow.offset[node]; to < flow.offset[node + 1]; ++to) {
-            area_m2[flow.receiver[to]] += flow.share[to] * area;
-        }
-    }
-}
-
 /// Drainage of a landscape into buffers that live as long as the simulation. Nodes without data keep area 0.
 template <Topology T>
 void drain_into(const T& topology, const Landscape& landscape, const Setting& setting, const River& river,
@@ -76,17 +51,14 @@ void drain_into(const T& topology, const Landscape& landscape, const Setting& se
         with_edges(topology, [&](const auto& edges) { keep_frozen(edges, elevation_m, frozen, drainage.directions); });
     }
     drainage.lakes = terrain::drain_lakes(topology, elevation_m, setting.boundary, drainage.directions);
+    with_edges(topology, [&](const auto& edges) { collect_rain(edges, setting.rainfall, drainage.area_m2); });
     if (river.flow == Flow::multiple) {
         const terrain::Division division{.exponent = river.flow_exponent};
-        terrain::multiple_flow(topology, elevation_m, drainage.directions, division, drainage.flow);
+        terrain::multiple_flow(topology, elevation_m, drainage.directions, division, drainage.flow, drainage.area_m2);
         drainage.order = drainage.flow.order;
         drainage.layers = {};
-        with_edges(topology, [&](const auto& edges) {
-            accumulate_rain(edges, setting.rainfall, drainage.flow, drainage.area_m2);
-        });
         return;
     }
-    with_edges(topology, [&](const auto& edges) { collect_rain(edges, setting.rainfall, drainage.area_m2); });
     double* const area_m2 = drainage.area_m2.data();
     terrain::order_by_layers(topology, elevation_m, drainage.directions, buffers.order, drainage.order, drainage.layers,
                              [=](Index donor, Index taker) { area_m2[taker] += area_m2[donor]; });

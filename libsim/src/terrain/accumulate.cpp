@@ -2,6 +2,7 @@
 #include "thalweg/terrain/accumulate.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 #include "terrain/blocks.hpp"
 #include "terrain/check_sizes.hpp"

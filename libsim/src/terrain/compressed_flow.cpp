@@ -72,29 +72,48 @@ void write_receivers(const Grid& grid, std::span<const SlotBits> bits, const std
     parallel_for(0, grid.rows, rows, std::max<Index>(1, 16384 / grid.cols));
 }
 
+namespace {
+
 /// From every node without donors down as far as all donors of a node have come by: donors before receivers, so the
-/// list is filled in from its end. `waiting` holds nodes whose donors are all placed.
-void write_order(std::span<const double> elevation_m, MultipleFlow& flow) {
+/// list is filled in from its end. Its beginning holds the nodes that wait for their turn, all their donors placed;
+/// they and the placed ones are never more than all.
+template <class Arrive>
+void order_nodes(std::span<const double> elevation_m, MultipleFlow& flow, Arrive arrive) {
     std::vector<std::uint8_t> awaited = count_donors(flow);
     flow.order.resize(flow.size());
+    Index* const order = flow.order.data();
     Index free = flow.size();
-    std::vector<Index> waiting(flow.size() + 1);
     for (Index leaf = 0; leaf < flow.size(); ++leaf) {
         if (awaited[leaf] != 0 || std::isnan(elevation_m[leaf])) continue;
         Index top = 0;
-        waiting[top++] = leaf;
+        order[top++] = leaf;
         while (top > 0) {
-            const Index node = waiting[--top];
-            flow.order[--free] = node;
+            const Index node = order[--top];
+            order[--free] = node;
             awaited[node] = placed;
             for (Index at = flow.offset[node]; at < flow.offset[node + 1]; ++at) {
                 const Index receiver = flow.receiver[at];
-                waiting[top] = receiver;  // kept only if nothing more is awaited there: no branch to mispredict
+                arrive(node, receiver, flow.share[at]);
+                order[top] = receiver;  // kept only if nothing more is awaited there: no branch to mispredict
                 top += --awaited[receiver] == 0;
             }
         }
     }
     flow.order.erase(flow.order.begin(), flow.order.begin() + free);
+}
+
+}  // namespace
+
+void write_order(std::span<const double> elevation_m, MultipleFlow& flow, std::span<double> upstream) {
+    if (upstream.empty()) {
+        order_nodes(elevation_m, flow, [](Index, Index, double) {});
+        return;
+    }
+    for (std::size_t node = 0; node < upstream.size(); ++node) {
+        if (std::isnan(elevation_m[node])) upstream[node] = 0;
+    }
+    order_nodes(elevation_m, flow,
+                [=](Index node, Index receiver, double share) { upstream[receiver] += share * upstream[node]; });
 }
 
 }  // namespace thalweg::terrain

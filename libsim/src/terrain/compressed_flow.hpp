@@ -22,7 +22,7 @@ void lay_out(std::span<const std::uint8_t> receivers_of, MultipleFlow&);
 void write_receivers(const Grid&, std::span<const SlotBits> bits, const std::function<void(Index, Index)>& shares,
                      MultipleFlow&);
 
-/// Writes the order. Nodes without data (NaN) are left out.
-void write_order(std::span<const double> elevation_m, MultipleFlow&);
+/// Writes the order, and adds up `upstream` (or nothing) along it. Nodes without data (NaN) are left out.
+void write_order(std::span<const double> elevation_m, MultipleFlow&, std::span<double> upstream = {});
 
 }  // namespace thalweg::terrain

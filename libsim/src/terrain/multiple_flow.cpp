@@ -9,9 +9,9 @@
 
 #include "terrain/check_sizes.hpp"
 #include "terrain/compressed_flow.hpp"
-#include "terrain/power.hpp"
 #include "terrain/water.hpp"
 #include "thalweg/core/error.hpp"
+#include "thalweg/core/power.hpp"
 
 namespace thalweg::terrain {
 namespace {
@@ -78,28 +78,43 @@ std::vector<SlotBits> receiver_bits(const Grid& grid, const Water& water) {
     return bits;
 }
 
-/// Turns slopes into shares for the nodes [first, last), whose receivers and lengths are known. Slopes are scaled by
-/// the steepest of the node, so that no power leaves the range of doubles.
+/// S^p of each receiver over that of the node's steepest one, by logarithms: no power leaves the range of doubles.
+/// What would fall under 2^-1000 becomes that, so that no share is 0. Loops without branches, which vectorise.
+void raise_slopes(double exponent, Index first, Index last, MultipleFlow& flow) {
+    const std::span<double> powers = std::span(flow.share).subspan(flow.offset[first]);
+    const std::size_t count = flow.offset[last] - flow.offset[first];
+    for (std::size_t i = 0; i < count; ++i) powers[i] = precise_log2(powers[i]).high;
+    for (Index node = first; node < last; ++node) {
+        double steepest = -std::numeric_limits<double>::infinity();
+        for (Index at = flow.offset[node]; at < flow.offset[node + 1]; ++at) {
+            steepest = flow.share[at] > steepest ? flow.share[at] : steepest;
+        }
+        for (Index at = flow.offset[node]; at < flow.offset[node + 1]; ++at) {
+            flow.share[at] = exponent * (flow.share[at] - steepest);
+        }
+    }
+    for (std::size_t i = 0; i < count; ++i) powers[i] = precise_exp2(powers[i] > -1000 ? powers[i] : -1000, 0);
+}
+
+/// Shares of the nodes [first, last), whose receivers and lengths are known.
 void divide(const double* ground, Division division, Index first, Index last, MultipleFlow& flow) {
     constexpr double gentlest = 1e-290;  // a slope that would underflow still counts as one
+    const bool quinn = division.contour == Division::Contour::quinn;
     for (Index node = first; node < last; ++node) {
-        double steepest = 0;
         for (Index at = flow.offset[node]; at < flow.offset[node + 1]; ++at) {
-            const double slope = (ground[node] - ground[flow.receiver[at]]) * (1 / flow.length[at]);
-            flow.share[at] = std::max(slope, gentlest);
-            steepest = std::max(steepest, flow.share[at]);
+            const double slope = (ground[node] - ground[flow.receiver[at]]) / flow.length[at];
+            flow.share[at] = slope > gentlest ? slope : gentlest;
         }
-        for (Index at = flow.offset[node]; at < flow.offset[node + 1]; ++at) flow.share[at] /= steepest;
     }
-    const Index begin = flow.offset[first];
-    raise_ratios(std::span(flow.share).subspan(begin, flow.offset[last] - begin), division.exponent);
+    if (division.exponent != 1) raise_slopes(division.exponent, first, last, flow);
     for (Index node = first; node < last; ++node) {
         double sum = 0;
         for (Index at = flow.offset[node]; at < flow.offset[node + 1]; ++at) {
-            if (division.contour == Division::Contour::quinn) flow.share[at] /= flow.length[at];
+            if (quinn) flow.share[at] /= flow.length[at];
             sum += flow.share[at];
         }
-        for (Index at = flow.offset[node]; at < flow.offset[node + 1]; ++at) flow.share[at] /= sum;
+        const double per_sum = 1 / sum;
+        for (Index at = flow.offset[node]; at < flow.offset[node + 1]; ++at) flow.share[at] *= per_sum;
     }
 }
 
@@ -147,14 +162,15 @@ void write_flow(const Mesh& mesh, const Water& water, Division division, Multipl
 
 template <Topology T>
 void flow_into(const T& topology, std::span<const double> elevation_m, const FlowDirections& single, Division division,
-               MultipleFlow& into) {
+               MultipleFlow& into, std::span<double> upstream = {}) {
+    if (!upstream.empty()) check_sizes(topology.size(), upstream.size(), upstream.size());
     check_sizes(topology.size(), elevation_m.size(), single.size());
     if (!(division.exponent > 0 && std::isfinite(division.exponent))) {
         throw Error(fmt::format("the exponent of multiple flow must be a positive number, not {}", division.exponent));
     }
     const Water water(topology, elevation_m, single);
     write_flow(topology, water, division, into);
-    write_order(elevation_m, into);
+    write_order(elevation_m, into, upstream);
 }
 
 template <Topology T>
@@ -183,13 +199,13 @@ MultipleFlow multiple_flow(const Mesh& mesh, std::span<const double> elevation_m
 }
 
 void multiple_flow(const Grid& grid, std::span<const double> elevation_m, const FlowDirections& single,
-                   Division division, MultipleFlow& into) {
-    flow_into(grid, elevation_m, single, division, into);
+                   Division division, MultipleFlow& into, std::span<double> upstream) {
+    flow_into(grid, elevation_m, single, division, into, upstream);
 }
 
 void multiple_flow(const Mesh& mesh, std::span<const double> elevation_m, const FlowDirections& single,
-                   Division division, MultipleFlow& into) {
-    flow_into(mesh, elevation_m, single, division, into);
+                   Division division, MultipleFlow& into, std::span<double> upstream) {
+    flow_into(mesh, elevation_m, single, division, into, upstream);
 }
 
 std::vector<double> accumulate(const MultipleFlow& flow, std::span<const double> amount) {

@@ -59,15 +59,16 @@ struct Division {
 /// off the shores has all its lower neighbours as receivers.
 ///
 /// Linear in the nodes; the same bytes for any number of threads. Throws Error if sizes do not fit, or the exponent is
-/// not a positive number. `into` is overwritten and its memory reused.
+/// not a positive number. `into` is overwritten and its memory reused. `upstream` (or nothing) holds each node's own
+/// amount and gets what `accumulate` makes of it.
 MultipleFlow multiple_flow(const Grid&, std::span<const double> elevation_m, const FlowDirections& single,
                            Division = {});
 MultipleFlow multiple_flow(const Mesh&, std::span<const double> elevation_m, const FlowDirections& single,
                            Division = {});
 void multiple_flow(const Grid&, std::span<const double> elevation_m, const FlowDirections& single, Division,
-                   MultipleFlow& into);
+                   MultipleFlow& into, std::span<double> upstream = {});
 void multiple_flow(const Mesh&, std::span<const double> elevation_m, const FlowDirections& single, Division,
-                   MultipleFlow& into);
+                   MultipleFlow& into, std::span<double> upstream = {});
 
 /// Sum of `amount` over each node and everything upstream, divided as the flow is. With cell areas (m²) this is the
 /// drainage area (m²), and the outlets' add up to the whole to rounding. Nodes without data stay 0.
