@@ -353,6 +353,22 @@ TEST_CASE("divided flow and its area are the same bytes on one thread and on two
     CHECK(with_threads(1) == with_threads(2));
 }
 
+TEST_CASE("areas added up while the flow is laid out are those of accumulating afterwards") {
+    const TestTerrain terrain{"", uneven_grid(30, 40), with_holes(noise_terrain(30, 40, 4), 0.05, 4).elevation_m};
+    const std::vector<double>& z = terrain.elevation_m;
+    const FlowDirections single = single_flow(terrain.grid, z, data_edge(terrain.grid, z));
+    const std::vector<double> areas = cell_areas(terrain.grid);
+    std::vector<double> upstream = areas;
+    MultipleFlow flow;
+    multiple_flow(terrain.grid, z, single, {}, flow, upstream);
+    const std::vector<double> expected = accumulate(flow, areas);
+    for (Index node = 0; node < terrain.grid.size(); ++node) {
+        CHECK(upstream[node] == Approx(expected[node]).epsilon(1e-14));
+    }
+    upstream.pop_back();
+    CHECK_THROWS_AS(multiple_flow(terrain.grid, z, single, {}, flow, upstream), Error);
+}
+
 TEST_CASE("memory that is used again holds nothing of what was there") {
     const TestTerrain first = noise_terrain(40, 30, 1), second = noise_terrain(20, 25, 2);
     MultipleFlow flow = divided(first.grid, first.elevation_m);

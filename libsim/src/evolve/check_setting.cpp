@@ -52,9 +52,6 @@ void check_river(const River& river) {
     if (!finite_and_not_negative(river.g)) {
         throw Error(fmt::format("the deposition coefficient G must be zero or more, not {}", river.g));
     }
-    if (river.g > 0 && river.flow == Flow::multiple) {
-        throw Error("deposition (G > 0) follows one receiver per node: use single flow, or G = 0");
-    }
     if (!(river.talus_slope > 0)) {
         throw Error(fmt::format("the talus slope must be positive, not {}", river.talus_slope));
     }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include "evolve/divided_sediment.hpp"
 #include "evolve/sediment.hpp"
 
 namespace thalweg::evolve {
@@ -12,6 +13,7 @@ struct SedimentBuffers {
     std::vector<std::uint8_t> in_lake;
     std::vector<SedimentState> state;
     std::vector<Answer> above;  // of all donors together
+    DividedSedimentBuffers divided;
 };
 
 /// One step of erosion and deposition, as the header says.
@@ -176,10 +178,13 @@ class SedimentStep {
 template <class Edges>
 StepSums erode_with_sediment(const Edges& edges, const Drainage& drainage, const River& river, const SlopeSolver& solve,
                              const Setting& setting, double dt_yr, Landscape& landscape, SedimentBuffers& buffers) {
-    StepSums sums =
-        SedimentStep<Edges>(edges, drainage, river, solve, setting, dt_yr, landscape.elevation_m, buffers).run();
+    std::vector<double>& elevation_m = landscape.elevation_m;
     landscape.time_yr += dt_yr;
-    return sums;
+    if (drainage.flow.size() > 0) {
+        return DividedSedimentStep<Edges>(edges, drainage, river, solve, setting, dt_yr, elevation_m, buffers.divided)
+            .run();
+    }
+    return SedimentStep<Edges>(edges, drainage, river, solve, setting, dt_yr, elevation_m, buffers).run();
 }
 
 }  // namespace thalweg::evolve

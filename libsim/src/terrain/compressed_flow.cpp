@@ -74,28 +74,40 @@ void write_receivers(const Grid& grid, std::span<const SlotBits> bits, const std
 
 namespace {
 
-/// From every node without donors down as far as all donors of a node have come by: donors before receivers, so the
-/// list is filled in from its end. Its beginning holds the nodes that wait for their turn, all their donors placed;
-/// they and the placed ones are never more than all.
+/// Asks for the receivers of a node that comes soon.
+void fetch_receivers(const MultipleFlow& flow, Index node) {
+    const Index first = flow.offset[node];
+    __builtin_prefetch(flow.receiver.data() + first);
+    __builtin_prefetch(flow.share.data() + first);
+}
+
+/// From the nodes without donors down as far as all donors of a node have come by: donors before receivers, so the list
+/// is filled in from its end, and is its own queue. The nodes without donors are taken in pieces, which keeps together
+/// in memory what the queue holds at a time.
 template <class Arrive>
 void order_nodes(std::span<const double> elevation_m, MultipleFlow& flow, Arrive arrive) {
+    constexpr Index piece = 4096;
+    constexpr Index ahead = 16;
     std::vector<std::uint8_t> awaited = count_donors(flow);
     flow.order.resize(flow.size());
     Index* const order = flow.order.data();
-    Index free = flow.size();
-    for (Index leaf = 0; leaf < flow.size(); ++leaf) {
-        if (awaited[leaf] != 0 || std::isnan(elevation_m[leaf])) continue;
-        Index top = 0;
-        order[top++] = leaf;
-        while (top > 0) {
-            const Index node = order[--top];
-            order[--free] = node;
+    Index free = flow.size();  // the queue: order[free … next), its head at the end
+    Index next = free;
+    for (Index leaf = 0; leaf < flow.size();) {
+        const Index end = std::min<std::uint64_t>(std::uint64_t{leaf} + piece, flow.size());
+        for (; leaf < end; ++leaf) {
+            if (awaited[leaf] == 0 && !std::isnan(elevation_m[leaf])) order[--free] = leaf;
+        }
+        while (next > free) {
+            if (next > free + 2 * ahead) __builtin_prefetch(&flow.offset[order[next - 1 - 2 * ahead]]);
+            if (next > free + ahead) fetch_receivers(flow, order[next - 1 - ahead]);
+            const Index node = order[--next];
             awaited[node] = placed;
             for (Index at = flow.offset[node]; at < flow.offset[node + 1]; ++at) {
                 const Index receiver = flow.receiver[at];
                 arrive(node, receiver, flow.share[at]);
-                order[top] = receiver;  // kept only if nothing more is awaited there: no branch to mispredict
-                top += --awaited[receiver] == 0;
+                order[free - 1] = receiver;  // kept only if nothing more is awaited there: no branch to mispredict
+                free -= --awaited[receiver] == 0;
             }
         }
     }

@@ -33,7 +33,7 @@ struct River {
     terrain::Receiver receiver = terrain::Receiver::steepest;
     Flow flow = Flow::single;
     double flow_exponent = 1.1;  ///< of the slopes in the shares (Freeman 1991)
-    double g = 0;                ///< G ≥ 0, dimensionless: deposition; 0: off. Needs single flow
+    double g = 0;                ///< G ≥ 0, dimensionless: deposition; 0: off
 };
 
 /// Volumes moved in one step or many (m³), each summed from its own law and not from the difference it should close.
@@ -101,10 +101,14 @@ struct StepReport {
 /// pass) is filled at most to the level that the lake has at the step's end, unless uplift alone lifts it out; what
 /// finds no room goes on with the water. Where no water runs (no rain) nothing is laid down.
 ///
+/// Along divided flow sediment divides as the water does, and the equations form no tree: the same two sweeps, with the
+/// answer found as if all receivers of a node moved together, are iterated until no height changes by more than 1e-12
+/// of the relief, at most 200 times (about 15 times for G = 0.5, 30 for 2 and 55 for 5).
+///
 /// A node without receiver keeps its height and is in no term: base level, an `open` node with no lower neighbour, and
 /// the lowest node of a connected piece that has no outlet at all. Nodes without data (NaN) stay as they are.
 /// Throws Error if sizes do not fit, k or m is negative, n is outside [0.3, 5], the talus slope or dt is not
-/// positive, G is negative, or G > 0 where flow divides (then there is no tree).
+/// positive, or G is negative.
 StepReport erode(const Grid&, const Drainage&, const River&, const Setting&, double dt_yr, Landscape&);
 StepReport erode(const Mesh&, const Drainage&, const River&, const Setting&, double dt_yr, Landscape&);
 
