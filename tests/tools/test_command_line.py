@@ -60,6 +60,23 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(result.stdout, "")
         self.assertEqual(sorted(self.here.rglob("*")), before)
 
+    def test_render_writes_one_picture_whole_or_not_at_all(self):
+        view = self.here / "view.png"
+        draw = ["render", DEM, "--size", "96x64", "--samples", 1, "--out"]
+        result = thalweg(*draw, view, "--json", "--quiet")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        self.assertEqual(json.loads(result.stdout), {"file": "view.png", "width": 96, "height": 64})
+        self.assertEqual(view.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        self.refused(*draw, view, saying="--force")
+        self.refused(*draw, self.here / "view.jpg", saying=".png or .svg")
+        self.refused(*draw, self.here / "other.png", "--size", "96", saying="--size")
+        self.refused(*draw, self.here / "other.png", "--color", "pink", saying="clay, kelley, elevation")
+        self.refused(*draw, self.here / "other.png", "--elevation-angle", 120, saying="90")
+        self.refused("render", self.here / "no.tif", "--out", self.here / "other.png", saying="no.tif")
+        self.refused(*draw, self.here / "full.png", saying="full", limit_bytes=500)
+        self.assertEqual(thalweg(*draw, view, "--force").returncode, 0)
+        self.assertEqual([p.name for p in self.here.iterdir() if p.name.startswith(".")], [])
+
     def test_help_and_version_explain_themselves(self):
         self.assertIn("analyze", thalweg("--help").stdout)
         for command in ("analyze", "simulate", "fit", "compare", "run", "fetch"):

@@ -6,6 +6,8 @@
 #include <limits>
 #include <new>
 
+#include "thalweg/core/parallel.hpp"
+
 namespace thalweg::render {
 namespace {
 
@@ -16,7 +18,7 @@ constexpr double lift = 2e-6;
 }  // namespace
 
 Rays::Rays(const TriangleSurface& ground, const TriangleSurface& sides)
-    : device_(rtcNewDevice("threads=1,set_affinity=0")) {
+    : device_(rtcNewDevice("set_affinity=0")) {
     if (!device_) throw std::bad_alloc();
     scene_.reset(rtcNewScene(device_.get()));
     rtcSetSceneFlags(scene_.get(), RTC_SCENE_FLAG_ROBUST);
@@ -34,7 +36,10 @@ Rays::Rays(const TriangleSurface& ground, const TriangleSurface& sides)
     size_ = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
     attach(ground, 0);
     if (!sides.triangles.empty()) attach(sides, 1);
-    rtcCommitScene(scene_.get());
+    {
+        const ThreadLimit one(1);  // not by the device's own setting, which would hold for our threads, too
+        rtcCommitScene(scene_.get());
+    }
     if (rtcGetDeviceError(device_.get()) != RTC_ERROR_NONE) throw std::bad_alloc();
 }
 

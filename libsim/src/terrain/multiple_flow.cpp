@@ -83,7 +83,10 @@ std::vector<SlotBits> receiver_bits(const Grid& grid, const Water& water) {
 void raise_slopes(double exponent, Index first, Index last, MultipleFlow& flow) {
     const std::span<double> powers = std::span(flow.share).subspan(flow.offset[first]);
     const std::size_t count = flow.offset[last] - flow.offset[first];
-    for (std::size_t i = 0; i < count; ++i) powers[i] = precise_log2(powers[i]).high;
+    for (std::size_t i = 0; i < count; ++i) {
+        const LogarithmOfTwo logarithm = precise_log2(powers[i]);
+        powers[i] = logarithm.high + logarithm.low;
+    }
     for (Index node = first; node < last; ++node) {
         double steepest = -std::numeric_limits<double>::infinity();
         for (Index at = flow.offset[node]; at < flow.offset[node + 1]; ++at) {
