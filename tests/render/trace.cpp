@@ -89,11 +89,19 @@ TEST_CASE("A tilted plain has the cosine between its normal and the sun, the ope
 TEST_CASE("The foot of a high wall sees half of the sky, and a pit less than a ridge") {
     const Model wall = terrain(1000, 250, [](double x, double) { return x > 502 ? 400.0 : 0.0; });
     const Light sky{.to_sun = {0, 0, -1}, .sky = {1, 1, 1}};
-    const Picture picture = trace(wall, from_above(wall, 100), sky, {.samples = 16, .sky_rays = 64});
+    const Camera camera = from_above(wall, 100);
+    const Picture picture = trace(wall, camera, sky, {.samples = 16, .sky_rays = 64});
     // Cosine-weighted: beside a wall of height h at distance d, long on both sides, (1 + d/√(d² + h²))/2 is open.
-    CHECK(picture.light[50 * 100 + 49].r == Approx((1 + 7.0 / std::hypot(7.0, 400.0)) / 2).margin(0.03));
-    CHECK(picture.light[50 * 100 + 20].r > picture.light[50 * 100 + 45].r);
-    CHECK(picture.light[50 * 100 + 99].r > 0.9f);
+    int tested = 0;
+    for (Index col = 0; col < 100; ++col) {
+        const Vector along = camera.ray({col + 0.5, 50.5});
+        const double x = camera.eye.x - camera.eye.z / along.z * along.x;  // where it meets the plain
+        if (x < 20 || x > 480) continue;
+        const double d = 502 - x;
+        CHECK(picture.light[50 * 100 + col].r == Approx((1 + d / std::hypot(d, 400.0)) / 2).margin(0.05));
+        ++tested;
+    }
+    CHECK(tested > 20);
 }
 
 TEST_CASE("The shadow of a wall is as long as its height over the tangent of the sun's elevation") {
@@ -109,7 +117,7 @@ TEST_CASE("The shadow of a wall is as long as its height over the tangent of the
             // On the plain the pixel's ray tells where: above the ridge's foot nothing is asked.
             const Vector along = camera.ray({col + 0.5, 250.5});
             const double x = camera.eye.x - camera.eye.z / along.z * along.x;
-            if (x < ridge + 10 || std::abs(x - shadow_end) < 1) continue;
+            if (x < ridge + 10 || x > 998 || std::abs(x - shadow_end) < 1) continue;
             INFO("x = " << x << ", end of the shadow at " << shadow_end);
             const float light_here = picture.light[250 * 500 + col].r;
             REQUIRE(light_here == Approx(x < shadow_end ? 0 : std::sin(elevation * degree)).margin(1e-5));
@@ -251,11 +259,11 @@ TEST_CASE("Pictures that cannot be are refused") {
 TEST_CASE("Light becomes bytes by the curve of sRGB, over the background where nothing is drawn") {
     const Picture picture{.width = 2,
                           .height = 2,
-                          .light = {{1, 0.2140411f, 0}, {0, 0, 0}, {0.5f, 0.5f, 0.5f}, {9, -1, 0.0031308f}},
+                          .light = {{1, 0.2158605f, 0}, {0, 0, 0}, {0.5f, 0.5f, 0.5f}, {9, -1, 0.0031308f}},
                           .coverage = {1, 0, 0.5f, 1}};
     const auto bytes = to_srgb(picture, {from_srgb(0x804020), from_srgb(0x804020)});
     CHECK(bytes[0] == 255);
-    CHECK(bytes[1] == 128);  // a middle grey reflects 21 %
+    CHECK(bytes[1] == 128);  // ((128/255 + 0.055)/1.055)^2.4
     CHECK(bytes[2] == 0);
     CHECK(bytes[3] == 0x80);
     CHECK(bytes[4] == 0x40);

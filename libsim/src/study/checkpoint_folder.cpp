@@ -12,6 +12,7 @@ namespace fs = std::filesystem;
 namespace {
 
 fs::path hidden_sibling(const fs::path& results) {
+    if (results.empty()) throw Error("no output folder: give --out DIR");
     fs::path place = fs::absolute(results).lexically_normal();
     if (!place.has_filename()) place = place.parent_path();
     return place.parent_path() / fmt::format(".{}.checkpoint", place.filename().string());

@@ -112,6 +112,7 @@ void OutputFolder::commit() {
 }
 
 void remove_abandoned(const fs::path& final) {
+    if (final.empty()) throw Error("no output folder: give --out DIR");
     fs::path place = fs::absolute(final).lexically_normal();
     if (!place.has_filename()) place = place.parent_path();
     const std::string prefix = fmt::format(".{}.partial-", place.filename().string());
