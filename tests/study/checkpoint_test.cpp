@@ -150,6 +150,28 @@ TEST_CASE("What a stopped run must share with its continuation is every value an
           std::string::npos);
 }
 
+TEST_CASE("A stopped run also shares every file of a list, and what stands beside a file to give it its place") {
+    const TempFolder temp;
+    for (const char* name :
+         {"rivers.geojson", "ridges.shp", "ridges.prj", "rain.png", "rain.png.aux.xml", "rain.pgw"}) {
+        write_text(temp / name, "as it was");
+    }
+    Experiment e = island(MeshKind::tin);
+    e.uplift.lines = {temp / "rivers.geojson", temp / "ridges.shp"};
+    e.rainfall.field = temp / "rain.png";
+    const std::string identity = identity_of(e);
+    write_text(temp / "rain.txt", "a note about it");
+    CHECK(identity_of(e) == identity);
+    for (const char* name :
+         {"rivers.geojson", "ridges.shp", "ridges.prj", "rain.png", "rain.png.aux.xml", "rain.pgw"}) {
+        INFO(name);
+        write_text(temp / name, "changed");
+        CHECK(identity_of(e) != identity);
+        write_text(temp / name, "as it was");
+        CHECK(identity_of(e) == identity);
+    }
+}
+
 TEST_CASE("How often a run saves itself, and whether it does, changes no result") {
     for (const MeshKind mesh : {MeshKind::tin, MeshKind::raster}) {
         const TempFolder temp;

@@ -141,10 +141,24 @@ std::string first_difference(const std::string& saved, const std::string& now) {
     return fmt::format("{}{} is now {}", section, without_meaning(was), without_meaning(is));
 }
 
+/// The files that a member names; none for members that name no files.
 template <class T>
-struct path_of : std::false_type {};
-template <>
-struct path_of<std::optional<fs::path>> : std::true_type {};
+std::vector<fs::path> files_of(const T&) {
+    return {};
+}
+std::vector<fs::path> files_of(const std::optional<fs::path>& file) {
+    return file ? std::vector{*file} : std::vector<fs::path>{};
+}
+std::vector<fs::path> files_of(const std::vector<fs::path>& files) { return files; }
+
+/// The file, and what may stand beside it: its place on the map, and the parts of a shapefile.
+std::vector<fs::path> with_companions(const fs::path& file) {
+    std::vector<fs::path> all{file, file.string() + ".aux.xml"};
+    for (const char* extension : {".prj", ".shx", ".dbf", ".cpg", ".wld", ".tfw", ".pgw", ".jgw"}) {
+        all.push_back(fs::path(file).replace_extension(extension));
+    }
+    return all;
+}
 
 }  // namespace
 
@@ -154,9 +168,11 @@ std::string identity_of(const Experiment& experiment) {
     e.output.checkpoint_every.reset();
     std::string text = to_toml(e);
     describe(e, [&](const Field& field, const auto& member) {
-        if constexpr (path_of<std::remove_cvref_t<decltype(member)>>::value) {
-            const bool there = member && fs::is_regular_file(*member);
-            if (there) text += fmt::format("[content] of {} = {}\n", field.key, sha256_of(*member));
+        for (const fs::path& named : files_of(member)) {
+            for (const fs::path& file : with_companions(named)) {
+                if (!fs::is_regular_file(file)) continue;
+                text += fmt::format("[content] of {} {} = {}\n", field.key, file.filename().string(), sha256_of(file));
+            }
         }
     });
     return text;
