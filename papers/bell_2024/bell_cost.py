@@ -267,24 +267,32 @@ def iterations_draw(rows, published, _):
 SEED_VARIANTS = {"his setting": (), "steepest receiver, no talus limit": ("hillslope.talus_angle_deg=90",
                                                                          "river.receiver=steepest"),
                  "steady solver": ("time.solver=steady", "river.receiver=steepest", "time.max_steps=3000")}
+#: Not asked for, but his uplift image is not known: what an uneven one does to the highest point (three seeds).
+UNEVEN = "steady solver, radial uplift"
 
 
 def seeds_runs(quick):
-    return [Run({"variant": variant, "seed": seed}, ("domain.nodes=10000" if quick else "domain.nodes=99927",
-                                                    "time.convergence=1e-2", f"seed={seed}", *overrides))
-            for variant, overrides in SEED_VARIANTS.items() for seed in range(1, 3 if quick else 11)]
+    common = ("domain.nodes=10000" if quick else "domain.nodes=99927", "time.convergence=1e-2")
+    return ([Run({"variant": variant, "seed": seed}, (*common, f"seed={seed}", *overrides))
+             for variant, overrides in SEED_VARIANTS.items() for seed in range(1, 3 if quick else 11)]
+            + [Run({"variant": UNEVEN, "seed": seed},
+                   (*common, f"seed={seed}", "uplift.pattern=radial", *SEED_VARIANTS["steady solver"]))
+               for seed in range(1, 3 if quick else 4)])
 
 
 def seeds_measure(run, summary, folder):
-    return {} if run.labels["variant"] == "steady solver" else steps_to_rest(run, summary, folder)
+    return {} if run.labels["variant"].startswith("steady solver") else steps_to_rest(run, summary, folder)
 
 
 def seeds_judge(rows, published):
     mine = select(rows, variant="his setting")
     heights = column(mine, "elevation_max_m")
-    return [verdict("highest point at these rates (A.2)", "3 235 m",
-                    f"{number(np.mean(heights))} ± {number(np.std(heights, ddof=1))} m", "within 15 %",
-                    abs(np.mean(heights) / 3235.46 - 1) < 0.15),
+    middle, spread = np.mean(heights), np.std(heights, ddof=1)
+    uneven = np.mean(column(select(rows, variant=UNEVEN), "elevation_max_m"))
+    return [verdict("highest point at these rates (A.2)", "3 235 m", f"{number(middle)} ± {number(spread)} m",
+                    "within 2 standard deviations of the seeds; explained if his, whose uplift image is not known, lies between "
+                    f"ours and that of radial uplift, {number(uneven)} m",
+                    abs(middle - 3235.46) < 2 * spread, explained=uneven < 3235.46 < middle, full_only=True),
             verdict("never under about 150 steps", "150", f"{number(min(column(mine, 'steps')))} to "
                     f"{number(max(column(mine, 'steps')))}", "every seed at least 150", min(column(mine, "steps")) >= 150,
                     full_only=True)]
@@ -293,7 +301,7 @@ def seeds_judge(rows, published):
 def seeds_draw(rows, published, _):
     drawing = style.figure(3, 5)
     axes = drawing.add_subplot()
-    for variant, colour in zip(SEED_VARIANTS, (style.SYNTHETIC, style.REAL, style.INK)):
+    for variant, colour in zip((*SEED_VARIANTS, UNEVEN), (style.SYNTHETIC, style.REAL, style.INK, style.MUTED)):
         mine = select(rows, variant=variant)
         axes.plot(column(mine, "steps"), column(mine, "elevation_max_m"), "o", color=colour, label=variant)
     axes.axhline(3235.46, color=style.REAL, linestyle=":", label="Bell 2024, A.2 (30 000 vertices)")
