@@ -12,6 +12,7 @@ import json
 import os
 import shutil
 import subprocess
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from typing import Callable
@@ -116,17 +117,27 @@ def _run(paper, case, tools, number, run, threads):
     return rows, folder if run.keep else None
 
 
+#: Starts a command from a small process: Linux counts the memory of whoever starts a program as the program's, too.
+_LAUNCH = """
+import os, sys
+pid = os.fork()
+if not pid:
+    os.execv(sys.argv[1], sys.argv[1:])
+_, status, usage = os.wait4(pid, 0)
+print(usage.ru_maxrss)
+code = os.waitstatus_to_exitcode(status)
+sys.exit(code if code >= 0 else 128 - code)
+"""
+
+
 def _execute(command):
     """Runs it; returns its largest resident memory (MiB)."""
     if not os.path.exists(command[0]):
         raise Failure(f"{command[0]} does not exist: ./run papers builds it, --thalweg names another")
-    with subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) as process:
-        complaint = process.stderr.read()
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        raise Failure(f"{' '.join(command)}: {complaint.strip() or process.returncode}")
-    return usage.ru_maxrss / 1024
+    done = subprocess.run([sys.executable, "-I", "-S", "-c", _LAUNCH, *command], capture_output=True, text=True, check=False)
+    if done.returncode:
+        raise Failure(f"{' '.join(command)}: {done.stderr.strip() or done.returncode}")
+    return float(done.stdout.split()[-1]) / 1024
 
 
 def _columns(summary):

@@ -21,11 +21,11 @@ def resolution(quick):
     return ("domain.nodes=5000", "output.resolution=64") if quick else ("output.resolution=256",)
 
 
-def draw_maps(paths, titles, columns, same_heights):
-    """Shaded maps in rows; with the same heights they share one key of colours."""
+def draw_maps(paths, titles, columns, same_heights, width=7.2):
+    """Shaded maps in rows (width in inches); with the same heights they share one key of colours."""
     terrains = [maps.read_terrain(path) for path in paths]
     rows = -(-len(terrains) // columns)
-    drawing = style.figure(rows * 7.2 / columns * 0.98 + 0.4, 7.2)
+    drawing = style.figure(rows * width / columns * 0.98 + 0.4, width)
     every = drawing.subplots(rows, columns, squeeze=False)
     for axes, terrain, title in itertools.zip_longest(every.flat, terrains, titles):
         if terrain is None:

@@ -148,6 +148,10 @@ class Running(unittest.TestCase):
         self.assertEqual(os.listdir(os.path.join(self.out, "work", "made_up", "heights")), ["001"])
         self.assertGreater(os.path.getsize(os.path.join(paper.folder, "figures", "heights.png")), 300)
 
+    def test_the_memory_of_a_run_is_the_programs_and_not_the_harness(self):
+        held = np.ones(12_000_000)  # 92 MiB
+        self.assertLess(harness._execute([self.program, "", "--out", self.out, "height=1"]), held.nbytes / 2**20)
+
     def test_a_verdict_other_than_the_recorded_one_is_told(self):
         self.assertEqual(self.run_paper(1, record=True)[1], [])
         self.assertEqual(self.run_paper(1)[1], [])
