@@ -3,6 +3,8 @@
 #include <memory>
 
 #include "command.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/study/channel_heads.hpp"
 
 namespace thalweg::tools {
 namespace {
@@ -16,7 +18,7 @@ const std::map<std::string, study::Routing> routings{
 struct Options {
     CommonOptions common;
     DemOptions dem;
-    std::string file, theta, knickpoint_prominence;
+    std::string file, theta, knickpoint_prominence, heads;
     std::string conditioning = "fill";
     std::string routing = "d8";
 };
@@ -30,9 +32,14 @@ void run(const Options& options) {
         measure.knickpoint_prominence_m =
             parse_number("--knickpoint-prominence-m", options.knickpoint_prominence, Sign::positive);
     }
+    if (!options.heads.empty() && !options.dem.channel_area_m2.empty()) {
+        throw Error("--heads and --channel-area-m2 both say where channels begin: give one of them");
+    }
     const io::ReadOptions read = read_options(options.dem);
     run_into_folder(options.common, "analyze", [&](const auto& folder, const study::Messages& m) {
-        return study::analyze(study::read_dem(options.file, read, m), measure, folder, m);
+        const study::NamedRaster dem = study::read_dem(options.file, read, m);
+        if (!options.heads.empty()) measure.heads = study::read_channel_heads(options.heads, dem.raster, m);
+        return study::analyze(dem, measure, folder, m);
     });
 }
 
@@ -52,6 +59,8 @@ void add_analyze(CLI::App& app) {
                      "how water is followed for the drainage area: d8, dinf or mfd (the network follows d8 always)")
         ->check(CLI::IsMember({"d8", "dinf", "mfd"}))
         ->capture_default_str();
+    command->add_option("--heads", options->heads,
+                        "points where channels begin, in any vector format GDAL reads, instead of a drainage area");
     command->add_option("--theta", options->theta, "concavity for chi and ksn [default: 0.45]");
     command->add_option("--knickpoint-prominence-m", options->knickpoint_prominence,
                         "height above the steepest concave profile from which a place is a knickpoint [default: 5 % of "

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "support/flow_trees.hpp"
+#include "thalweg/terrain/accumulate.hpp"
 
 using namespace thalweg;
 using namespace thalweg::channel;
@@ -285,4 +286,43 @@ TEST_CASE("A river of a million nodes needs no stack") {
     const StreamNetwork network = network_of(graph);
     REQUIRE(network.size() == 1);
     CHECK(network.length_m[0] == count - 1);
+}
+
+TEST_CASE("Channels from heads are the nodes with a head at or upstream of them, whatever the order of the heads",
+          "[heads]") {
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        Random random(seed, 5);
+        const FlowGraph graph = support::random_tree(1 + random.below(300), random);
+        std::vector<Index> heads;
+        std::vector<double> is_head(graph.size(), 0);
+        for (Index node = 0; node < graph.size(); ++node) {
+            if (random.uniform() < 0.02) heads.push_back(node), is_head[node] = 1;
+        }
+        const auto above = terrain::accumulate(graph, is_head);
+        const auto channel = channels_from_heads(graph, heads);
+        for (Index node = 0; node < graph.size(); ++node) REQUIRE(channel[node] == (above[node] > 0 ? 1 : 0));
+        std::reverse(heads.begin(), heads.end());
+        CHECK(channels_from_heads(graph, heads) == channel);
+    }
+}
+
+TEST_CASE("The heads of channels by area give those channels again", "[heads]") {
+    for (std::uint64_t seed = 0; seed < 50; ++seed) {
+        Random random(seed, 6);
+        const FlowGraph graph = support::random_tree(200, random);
+        const auto area = support::upstream_counts(graph);
+        for (const double threshold : {1.0, 2.0, 7.0, 40.0, 1e6}) {
+            const auto channel = channels_by_area(area, threshold);
+            CHECK(channels_from_heads(graph, channel_heads(graph, channel)) == channel);
+        }
+    }
+}
+
+TEST_CASE("Two heads of which one lies on the other's path make one river", "[heads]") {
+    const FlowGraph graph = graph_of({none, 0, 1, 2, 3});
+    const StreamNetwork network = network_of(graph, channels_from_heads(graph, std::vector<Index>{4, 2}));
+    CHECK(network.size() == 1);
+    CHECK(network.shreve[0] == 1);
+    CHECK(network.length_m[0] == 4);
+    CHECK(network_of(graph, channels_from_heads(graph, {})).size() == 0);
 }

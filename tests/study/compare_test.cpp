@@ -157,4 +157,8 @@ TEST_CASE("A side measured before sets the threshold of the other, and two that 
     const auto finer = folder_of(temp, "b", other);
     CHECK(error_of([&] { compared(temp, measured, finer); }).find("one ruler") != std::string::npos);
     CHECK(error_of([&] { compared(temp, measured, dem, 200); }).find("one ruler") != std::string::npos);
+    other["channels"]["threshold_area_m2"] = nullptr;
+    const auto from_heads = folder_of(temp, "c", other);
+    CHECK(error_of([&] { compared(temp, from_heads, dem); }).find("do not begin at a drainage area") !=
+          std::string::npos);
 }

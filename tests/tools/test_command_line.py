@@ -114,6 +114,31 @@ class CommandLine(unittest.TestCase):
         for change in ("river.k=-1", "river.m=abc", "river.erodability=1", "domain.nodes=0", "time.step_yr=inf"):
             self.refused("simulate", self.experiment, "--set", change, *out, saying=change.split("=")[0])
 
+    def test_heads_say_where_channels_begin(self):
+        def place(x, y):
+            return {"type": "Feature", "properties": {}, "geometry": {"type": "Point", "coordinates": [x, y]}}
+
+        heads, lines = self.here / "heads.geojson", self.here / "none.geojson"
+        heads.write_text(json.dumps({"type": "FeatureCollection", "features": [
+            place(-84.2, 36.4), place(-84.25, 36.3), place(-84.2, 36.4), place(10, 50)]}))
+        lines.write_text(json.dumps({"type": "FeatureCollection", "features": []}))
+        done = thalweg("analyze", DEM, "--heads", heads, "--keep-edge-basins", "--out", self.here / "out", "--json",
+                       "--no-figures")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        channels = json.loads(done.stdout)["channels"]
+        self.assertEqual(channels["rule"], "heads")
+        self.assertEqual(channels["heads"], {"given": 4, "outside": 1, "merged": 1})
+        self.assertEqual(channels["sources"], 2)
+        self.assertIsNone(channels["threshold_area_m2"])
+        self.assertIn("(10, 50)", done.stderr)
+        out = ["--out", self.here / "refused"]
+        self.refused("analyze", DEM, "--heads", lines, *out, saying="no points")
+        self.refused("analyze", DEM, "--heads", self.here / "nowhere.gpkg", *out, saying="nowhere.gpkg")
+        self.refused("analyze", DEM, "--heads", DEM, *out, saying="no vector file")
+        self.refused("analyze", DEM, "--heads", heads, "--channel-area-m2", "1e5", *out, saying="--channel-area-m2")
+        heads.write_text(json.dumps({"type": "FeatureCollection", "features": [place(10, 50)]}))
+        self.refused("analyze", DEM, "--heads", heads, *out, saying="(10, 50)")
+
     def test_results_that_exist_are_kept_unless_force_is_given(self):
         out = self.here / "out"
         self.assertEqual(thalweg("simulate", self.experiment, "--out", out, "--no-figures").returncode, 0)

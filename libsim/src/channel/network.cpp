@@ -97,6 +97,23 @@ std::vector<std::uint8_t> channels_by_area(std::span<const double> drainage_area
     return channel;
 }
 
+std::vector<std::uint8_t> channels_from_heads(const FlowGraph& graph, std::span<const Index> heads) {
+    std::vector<std::uint8_t> channel(graph.size(), 0);
+    for (const Index head : heads) {
+        for (Index node = head; node != none && !channel[node]; node = graph.receiver[node]) channel[node] = 1;
+    }
+    return channel;
+}
+
+std::vector<Index> channel_heads(const FlowGraph& graph, std::span<const std::uint8_t> channel) {
+    const auto donors = donor_counts(graph, channel);
+    std::vector<Index> heads;
+    for (Index node = 0; node < graph.size(); ++node) {
+        if (channel[node] && donors[node] == 0) heads.push_back(node);
+    }
+    return heads;
+}
+
 std::vector<Index> strahler_orders(const FlowGraph& graph, std::span<const std::uint8_t> channel) {
     std::vector<Index> order(graph.size(), 0);          // highest inflow so far, then the node's own
     std::vector<std::uint8_t> shared(graph.size(), 0);  // 1 if two or more inflows have it

@@ -40,6 +40,10 @@ Json conditioning_json(const ConditioningReport& c, Conditioning method) {
             {"flat_cells", c.flat_cells}};
 }
 
+Json heads_json(const ChannelHeads& heads) {
+    return {{"given", heads.given}, {"outside", heads.outside}, {"merged", heads.merged}};
+}
+
 const char* routing_name(Routing routing) {
     constexpr std::array names{"d8", "dinf", "mfd"};
     return names[static_cast<std::size_t>(routing)];
@@ -86,8 +90,7 @@ void write_rasters(const Raster& dem, const RasterMeasurement& m, const std::fil
 void write_tables(const Raster& dem, const Statistics& s, const std::filesystem::path& folder) {
     const PositionOf position = positions(dem);
     auto outlines = io::cell_outlines(dem, s.basin_of, static_cast<Index>(s.basins.size()));
-    io::write_geopackage(folder / "network.gpkg",
-                         network_layers(s, position, std::move(outlines)),
+    io::write_geopackage(folder / "network.gpkg", network_layers(s, position, std::move(outlines)),
                          dem.placement.crs_wkt);
     io::write_csv(folder / "hypsometry.csv", hypsometry_table(s.hypsometry));
     io::write_csv(folder / "chi.csv", chi_table(s, position));
@@ -122,6 +125,7 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
     for (const std::string& note : notes) {
         if (note.starts_with("channels:")) messages.warning(note);
     }
+    if (options.heads) summary["channels"]["heads"] = heads_json(*options.heads);
     summary["measured_on"] = "raster";
     summary["routing"] = routing_name(options.routing);
     summary["slope_area"]["segment_drop_m"] = m.segment_drop_m;

@@ -63,6 +63,12 @@ double common_threshold(const Side& a, const Side& b, const CompareOptions& opti
     for (const Side* side : {&a, &b}) {
         if (side->raster) continue;
         const double measured = at(side->summary, "/channels/threshold_area_m2");
+        if (std::isnan(measured)) {
+            throw Error(
+                fmt::format("'{}' was measured with channels that do not begin at a drainage area: both sides "
+                            "need one ruler; give the DEMs, or analyze them with --channel-area-m2",
+                            side->path.string()));
+        }
         if (common && *common != measured) {
             throw Error(
                 fmt::format("'{}' was measured with channels from {} m2, not {} m2: both sides need one ruler; "

@@ -19,10 +19,33 @@
 namespace thalweg::study {
 namespace {
 
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
 double total_area(const RoutedTerrain& terrain) {
     double area = 0;
     for (const Index node : terrain.graph.order) area += terrain.cell_area_m2[node];
     return area;
+}
+
+/// What may enter statistics: complete catchments, or (empty) everything.
+std::span<const std::uint8_t> nodes_in_use(const RoutedTerrain& terrain, const MeasureOptions& options) {
+    if (options.edge_basins == terrain::EdgeBasins::keep) return {};
+    return terrain.complete;
+}
+
+/// Of the channels those that may enter statistics.
+std::vector<std::uint8_t> channels_in_use(std::vector<std::uint8_t> channels, std::span<const std::uint8_t> used) {
+    for (std::size_t node = 0; node < used.size(); ++node) channels[node] &= used[node];
+    return channels;
+}
+
+/// Basins of the statistics: from the threshold on or, where channels have heads, all that hold a channel.
+std::vector<terrain::Basin> basins_in_use(const RoutedTerrain& terrain, const MeasureOptions& options,
+                                          double threshold_m2, std::span<const std::uint8_t> channels) {
+    auto basins = terrain::basins(terrain.graph, terrain.drainage_area_m2, terrain.complete,
+                                  options.heads ? 0 : threshold_m2, options.edge_basins);
+    if (options.heads) std::erase_if(basins, [&](const terrain::Basin& basin) { return !channels[basin.outlet]; });
+    return basins;
 }
 
 std::size_t count(const std::vector<std::uint8_t>& flags) {
@@ -71,6 +94,17 @@ PowerLawFit exceedance_in_largest_basin(const RoutedTerrain& terrain, const Stat
     for (std::size_t node = 0; node < inside.size(); ++node) inside[node] = s.basin_of[node] == 0;
     const double largest_m2 = s.basins.empty() ? 0 : s.basins.front().basin.area_m2;
     return channel::area_exceedance(terrain.drainage_area_m2, inside, threshold_m2, 0.1 * largest_m2);
+}
+
+/// Drainage area where channels begin: least, median, largest.
+std::array<double, 3> source_areas(const RoutedTerrain& terrain, std::span<const std::uint8_t> channels) {
+    std::vector<double> areas;
+    for (const Index head : channel::channel_heads(terrain.graph, channels)) {
+        areas.push_back(terrain.drainage_area_m2[head]);
+    }
+    if (areas.empty()) return {nan, nan, nan};
+    const auto [least, most] = std::ranges::minmax(areas);
+    return {least, quantile(std::move(areas), 0.5), most};
 }
 
 NetworkStatistics network_statistics(const RoutedTerrain& terrain, const Statistics& s, double threshold_m2) {
@@ -125,9 +159,10 @@ std::vector<BasinStatistics> basin_statistics(const RoutedTerrain& terrain, std:
 
 /// Relief of the largest basin of the statistics, or of everything where there is none: what 2.5 % are taken of.
 double reference_relief(const RasterMeasurement& m, std::span<const double> ground_m, double threshold_m2,
-                        terrain::EdgeBasins edge_basins) {
-    const auto basins =
-        terrain::basins(m.terrain.graph, m.terrain.drainage_area_m2, m.terrain.complete, threshold_m2, edge_basins);
+                        const MeasureOptions& options) {
+    std::vector<std::uint8_t> channels;
+    if (options.heads) channels = channel_nodes(m.terrain, options, threshold_m2);
+    const auto basins = basins_in_use(m.terrain, options, threshold_m2, channels);
     const auto labels = terrain::basin_labels(m.terrain.graph, std::span(basins).first(basins.empty() ? 0 : 1));
     double lowest = std::numeric_limits<double>::infinity(), highest = -lowest;
     for (const Index node : m.terrain.graph.order) {
@@ -136,12 +171,6 @@ double reference_relief(const RasterMeasurement& m, std::span<const double> grou
         highest = std::max(highest, ground_m[node]);
     }
     return highest - lowest;
-}
-
-/// What may enter statistics: complete catchments, or (empty) everything.
-std::span<const std::uint8_t> nodes_in_use(const RoutedTerrain& terrain, const MeasureOptions& options) {
-    if (options.edge_basins == terrain::EdgeBasins::keep) return {};
-    return terrain.complete;
 }
 
 /// The terrain along which slopes are measured: never filled, cut through where pits were.
@@ -181,26 +210,19 @@ void report_changes(const Raster& raster, const std::vector<double>& surface, Co
 std::vector<channel::SlopeAreaPoint> segments(const RoutedTerrain& carved, RasterMeasurement& m,
                                               const MeasureOptions& options, double threshold_m2,
                                               std::span<const double> ground_m) {
-    const double relief = reference_relief(m, ground_m, threshold_m2, options.edge_basins);
+    const double relief = reference_relief(m, ground_m, threshold_m2, options);
     m.vertical_quantum_m = channel::vertical_quantum(ground_m);
     m.segment_drop_m = std::max(0.025 * relief, 3 * m.vertical_quantum_m);
     if (!(m.segment_drop_m > 0)) return {};
-    return channel::fixed_drop_segments(
-        carved.graph, carved.drainage_area_m2, carved.elevation_m, nodes_in_use(carved, options),
-        {.drop_m = m.segment_drop_m, .smallest_drop_m = 3 * m.vertical_quantum_m, .smallest_area_m2 = threshold_m2});
+    const auto channels = channels_in_use(channel_nodes(carved, options, threshold_m2), nodes_in_use(carved, options));
+    return channel::fixed_drop_segments(carved.graph, carved.drainage_area_m2, carved.elevation_m, channels,
+                                        {.drop_m = m.segment_drop_m, .smallest_drop_m = 3 * m.vertical_quantum_m});
 }
 
 double relief_of(const std::vector<double>& elevation_m) {
     if (elevation_m.empty()) return 0;
     const auto [lowest, highest] = std::ranges::minmax_element(elevation_m);
     return *highest - *lowest;
-}
-
-/// Area that decides where channels begin. Divided flow may lose water along a path of the graph, a channel that has
-/// begun goes on.
-std::vector<double> initiation_area(const RoutedTerrain& terrain) {
-    if (terrain.divided_area_m2.empty()) return terrain.drainage_area_m2;
-    return terrain::largest_upstream(terrain.graph, terrain.divided_area_m2);
 }
 
 /// Drainage area by the routing that was asked for, on the surface before it was carved; empty for D8.
@@ -239,35 +261,42 @@ double default_channel_area(double area_m2) {
     return best;
 }
 
+std::vector<std::uint8_t> channel_nodes(const RoutedTerrain& terrain, const MeasureOptions& options,
+                                        double threshold_m2) {
+    if (options.heads) return channel::channels_from_heads(terrain.graph, options.heads->cells);
+    if (terrain.divided_area_m2.empty()) return channel::channels_by_area(terrain.drainage_area_m2, threshold_m2);
+    // Divided flow may lose water along a path of the graph; a channel that has begun goes on.
+    return channel::channels_by_area(terrain::largest_upstream(terrain.graph, terrain.divided_area_m2), threshold_m2);
+}
+
 Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_m, const MeasureOptions& options,
                    std::vector<channel::SlopeAreaPoint> slopes) {
     const double threshold = options.channel_area_m2.value_or(default_channel_area(total_area(terrain)));
-    const std::span<const std::uint8_t> used = nodes_in_use(terrain, options);
 
     Statistics s;
     s.hypsometry = terrain::hypsometry(ground_m, terrain.cell_area_m2);
-    const std::vector<double> initiation_area_m2 = initiation_area(terrain);
-    const auto all_channels = channel::channels_by_area(initiation_area_m2, threshold);
-    const auto channels = channel::channels_by_area(initiation_area_m2, threshold, used);
+    const auto all_channels = channel_nodes(terrain, options, threshold);
+    const auto channels = channels_in_use(all_channels, nodes_in_use(terrain, options));
     s.strahler_of = channel::strahler_orders(terrain.graph, channels);
     s.shreve_of = channel::shreve_magnitudes(terrain.graph, channels);
     s.network = channel::stream_network(terrain.graph, channels, terrain.drainage_area_m2, terrain.elevation_m);
 
-    const auto basins =
-        terrain::basins(terrain.graph, terrain.drainage_area_m2, terrain.complete, threshold, options.edge_basins);
+    const auto basins = basins_in_use(terrain, options, threshold, all_channels);
     s.basin_of = terrain::basin_labels(terrain.graph, basins);
     s.basins = basin_statistics(terrain, ground_m, basins, s);
     const double basin_area =
         std::accumulate(basins.begin(), basins.end(), 0.0, [](double sum, const auto& b) { return sum + b.area_m2; });
 
-    s.channels = channel_statistics(s, threshold, basin_area);
+    s.channels = channel_statistics(s, options.heads ? nan : threshold, basin_area);
+    s.channels.rule = options.heads ? ChannelRule::heads : ChannelRule::area;
+    s.channels.source_area_m2 = source_areas(terrain, channels);
     s.channels.nodes = static_cast<Index>(count(channels));
     const std::size_t everywhere = count(all_channels);
     s.channels.share_used = everywhere > 0 ? static_cast<double>(s.channels.nodes) / static_cast<double>(everywhere)
                                            : std::numeric_limits<double>::quiet_NaN();
     s.strahler = channel::strahler_statistics(s.network);
     s.horton = channel::horton_ratios(s.strahler);
-    s.network_laws = network_statistics(terrain, s, threshold);
+    s.network_laws = network_statistics(terrain, s, options.heads ? s.channels.source_area_m2[0] : threshold);
     s.slope_area = channel::fit_slope_area(channel::slope_area_bins(slopes));
     s.slope_area_points = std::move(slopes);
     return s;
@@ -275,8 +304,7 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
 
 ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions& options, double threshold_m2,
                           double drop_m) {
-    const auto channels =
-        channel::channels_by_area(carved.drainage_area_m2, threshold_m2, nodes_in_use(carved, options));
+    const auto channels = channels_in_use(channel_nodes(carved, options, threshold_m2), nodes_in_use(carved, options));
     ChiStatistics c{.theta = options.theta,
                     .reference_area_m2 = 1e6,
                     .profile = {},

@@ -42,8 +42,15 @@ Json hypsometry_json(const terrain::Hypsometry& h) {
             {"relative_height", numbers(h.relative_height)}};
 }
 
+const char* rule_name(ChannelRule rule) {
+    constexpr std::array names{"area", "heads"};
+    return names[static_cast<std::size_t>(rule)];
+}
+
 Json channels_json(const ChannelStatistics& c) {
-    return {{"threshold_area_m2", c.threshold_area_m2},
+    return {{"rule", rule_name(c.rule)},
+            {"threshold_area_m2", number(c.threshold_area_m2)},
+            {"source_area_m2", numbers(c.source_area_m2)},
             {"basin_area_m2", c.basin_area_m2},
             {"share_used", number(c.share_used)},
             {"cells", c.nodes},
@@ -109,11 +116,19 @@ Json basins_json(const Statistics& s, const PositionOf& position) {
 
 void explain_nulls(const Statistics& s, std::vector<std::string>& notes) {
     if (!std::isfinite(s.hypsometry.integral)) notes.push_back("hypsometry: the terrain has no relief");
-    if (s.basins.empty()) {
+    if (s.channels.rule == ChannelRule::heads) {
+        notes.push_back("channels: they begin at given points, so there is no threshold_area_m2");
+        if (s.basins.empty()) {
+            notes.push_back(
+                "channels: no complete catchment holds a channel, so there are no network statistics; use "
+                "--keep-edge-basins to count cut catchments too");
+        }
+    } else if (s.basins.empty()) {
         notes.push_back(
             "channels: no catchment of at least the channel threshold lies wholly within the data, so there are no "
             "network statistics; lower --channel-area-m2, or use --keep-edge-basins to count cut catchments too");
-    } else if (s.channels.max_strahler < 3) {
+    }
+    if (!s.basins.empty() && s.channels.max_strahler < 3) {
         notes.push_back(s.channels.max_strahler < 2 ? "horton: the ratios need at least two Strahler orders"
                                                     : "horton: the ratios rest on two Strahler orders only");
     }

@@ -32,6 +32,15 @@ struct StreamNetwork {
 std::vector<std::uint8_t> channels_by_area(std::span<const double> drainage_area_m2, double threshold_m2,
                                            std::span<const std::uint8_t> used = {});
 
+/// 1 at the nodes that water from the heads runs through, the heads included: the union of the flow paths below them.
+/// A head on another's path is legal and changes nothing. Heads must be nodes with data. Linear: every path is followed
+/// until it meets one followed before.
+std::vector<std::uint8_t> channels_from_heads(const terrain::FlowGraph&, std::span<const Index> heads);
+
+/// Channel nodes without a channel donor, ascending: where channels begin. `channels_from_heads` of them gives the same
+/// channels again, provided that no channel ends before its water does.
+std::vector<Index> channel_heads(const terrain::FlowGraph&, std::span<const std::uint8_t> channel);
+
 /// Strahler order of every channel node: 1 at a source; where two or more inflows share the highest order, one more
 /// than that, else the highest. 0 outside the channels. Linear, without recursion; any number of inflows.
 std::vector<Index> strahler_orders(const terrain::FlowGraph&, std::span<const std::uint8_t> channel);

@@ -31,4 +31,9 @@ struct Raster {
     std::vector<double> values;  ///< grid.size() of them, in metres when they are elevations
 };
 
+/// The cell that holds a point given in the raster's coordinates, `none` beside it. A point between two cells is in the
+/// eastern, or the southern one; on the eastern or southern edge of the raster it is in the last. Longitudes may differ
+/// from the raster's by whole turns.
+Index cell_at(const Raster&, Point);
+
 }  // namespace thalweg

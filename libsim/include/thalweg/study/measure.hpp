@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -36,14 +37,29 @@ enum class Routing {
     mfd    ///< to all lower neighbours, by slope to the power of 1.1 (Freeman 1991)
 };
 
+/// What decides where channels begin.
+enum class ChannelRule {
+    area,  ///< the drainage area
+    heads  ///< points given by the user
+};
+
+/// Cells where channels begin, as somebody mapped them.
+struct ChannelHeads {
+    std::vector<Index> cells;  ///< ascending, each once, all with data
+    Index given = 0;           ///< points, of which some may lie
+    Index outside = 0;         ///< off the data: they say nothing about this terrain and are left out
+    Index merged = 0;          ///< in a cell that another has
+};
+
 struct MeasureOptions {
     Conditioning conditioning = Conditioning::fill;
     Routing routing = Routing::d8;
     std::optional<double> channel_area_m2;  ///< default: 0.1 % of the area, rounded to 1-2-5
+    std::optional<ChannelHeads> heads{};    ///< channels begin at these cells instead
     terrain::EdgeBasins edge_basins = terrain::EdgeBasins::drop;
-    std::optional<Index> catchment_outlet{};  ///< the raster is one catchment that leaves here: its
-                                              ///< rim is a divide, not a cut
-    double theta = 0.45;                      ///< concavity for chi and ksn
+    std::optional<Index> catchment_outlet{};          ///< the raster is one catchment that leaves here: its
+                                                      ///< rim is a divide, not a cut
+    double theta = 0.45;                              ///< concavity for chi and ksn
     std::optional<double> knickpoint_prominence_m{};  ///< default: 5 % of the rivers' relief, at least a segment's drop
 };
 
@@ -67,10 +83,12 @@ struct BasinStatistics {
 
 /// Channels and what is counted on them. Lengths in metres, areas in m².
 struct ChannelStatistics {
-    double threshold_area_m2;
-    double basin_area_m2;  ///< area of the basins used
-    double share_used;     ///< of the channel nodes, in complete catchments
-    Index nodes;           ///< channel nodes used
+    ChannelRule rule;
+    double threshold_area_m2;                ///< NaN where channels begin at given cells
+    std::array<double, 3> source_area_m2{};  ///< least, median and largest drainage area where channels begin
+    double basin_area_m2;                    ///< area of the basins used
+    double share_used;                       ///< of the channel nodes, in complete catchments
+    Index nodes;                             ///< channel nodes used
     Index sources, links, junctions, outlets;
     double total_length_m;
     double drainage_density_per_m;  ///< total length over the area of the basins used
@@ -125,6 +143,10 @@ struct Statistics {
 /// any conditioning, of which the hypsometry and the relief are taken.
 Statistics measure(const RoutedTerrain&, std::span<const double> ground_m, const MeasureOptions&,
                    std::vector<channel::SlopeAreaPoint> slopes);
+
+/// 1 where channels run by the options, in complete catchments or not: from the heads or, without any, where the
+/// drainage area (that of divided flow, here or upstream) reaches `threshold_m2`.
+std::vector<std::uint8_t> channel_nodes(const RoutedTerrain&, const MeasureOptions&, double threshold_m2);
 
 /// Long profiles on the terrain along which slopes are measured (carved, on a raster): ksn over falls of at least
 /// `drop_m`, channels from `threshold_m2`.
