@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "support/temp_folder.hpp"
+#include "thalweg/study/growth_site.hpp"
 
 using namespace thalweg;
 using namespace thalweg::study;
@@ -227,4 +228,60 @@ TEST_CASE("Lines are one file or several, with one width and value or several, a
     CHECK(again.rainfall.lines_value == two.rainfall.lines_value);
     CHECK(test::is_sentence(refusal("[uplift]\nlines_width_m = 0\n")));
     CHECK(test::is_sentence(refusal("[uplift]\nlines = 3\n")));
+}
+
+TEST_CASE("A basin and the dials of a network are read and written back as they were") {
+    const std::string toml = R"(
+seed = 9
+[basin]
+outline = [[0, 0], [8000.5, 500], [12000, 6000], [-2000, 4000]]
+trunk = [[0, 0], [6500, 3500]]
+base_level_m = 100
+[growth]
+channel_maintenance_m = 250
+mean_junction = 0.4
+flint_q = -0.5
+upstream_link = "turns"
+stop = "links"
+tension_channel = 7
+extra_tension_divide = 2
+channel_width_m = 3
+)";
+    const Experiment e = read(toml);
+    const Experiment again = read(to_toml(e));
+    for (const Experiment* each : {&e, &again}) {
+        CHECK(std::get<std::vector<Point>>(*each->basin.outline) ==
+              std::vector<Point>{{0, 0}, {8000.5, 500}, {12000, 6000}, {-2000, 4000}});
+        CHECK(std::get<std::vector<Point>>(*each->basin.trunk) == std::vector<Point>{{0, 0}, {6500, 3500}});
+        CHECK(each->basin.base_level_m == 100);
+        const grow::Dials dials = dials_of(*each);
+        CHECK(dials.channel_maintenance_m == 250);
+        CHECK(dials.seed == 9);
+        CHECK(dials.mean_junction == 0.4);
+        CHECK(dials.flint.q == -0.5);
+        CHECK(dials.upstream_link == grow::UpstreamLink::turns);
+        CHECK(dials.stop == grow::Stop::links);
+        CHECK(each->growth.tension_channel == 7);
+        CHECK(each->growth.extra_tension_divide == 2);
+        CHECK(each->growth.channel_width_m == 3);
+    }
+    CHECK(to_toml(again) == to_toml(e));
+    const Experiment filed = read("[basin]\noutline = \"basin.geojson\"");
+    CHECK(std::get<std::filesystem::path>(*filed.basin.outline).filename() == "basin.geojson");
+}
+
+TEST_CASE("A basin or a dial that cannot be is refused by its name") {
+    const auto refused = [](const std::string& toml, const std::string& why) {
+        CHECK_THAT(refusal(toml), Catch::EndsWith(why));
+    };
+    refused("[basin]\noutline = [[0, 0], [1]]",
+            "basin.outline must be a list of places [[x, y], …] or a file name in quotes, not [ [ 0, 0 ], [ 1 ] ]");
+    refused("[basin]\noutline = [0, 1]",
+            "basin.outline must be a list of places [[x, y], …] or a file name in quotes, not [ 0, 1 ]");
+    refused("[basin]\ntrunk = 7", "basin.trunk must be a file name in quotes, not 7");
+    refused("[basin]\noutline = [[0, nan], [1, 0], [1, 1]]", "basin.outline must be a finite number, not nan");
+    refused("[growth]\nflint_q = 0.3", "growth.flint_q must be at least -2 and at most -0.05, not 0.3");
+    refused("[growth]\nchannel_maintenance_m = 0",
+            "growth.channel_maintenance_m must be above 0 and at most 1000000000, not 0");
+    CHECK_THAT(error_of([] { dials_of({}); }), Catch::StartsWith("growth.channel_maintenance_m is needed"));
 }

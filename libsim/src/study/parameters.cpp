@@ -202,6 +202,22 @@ class Reader {
         for (std::size_t i = 0; i < member.size(); ++i) read(field, array == nullptr ? node : (*array)[i], member[i]);
     }
 
+    void read(const Field& field, const toml::node& node, Shape& member) const {
+        const toml::array* array = node.as_array();
+        if (array == nullptr) return read(field, node, member.emplace<std::filesystem::path>());
+        std::vector<Point>& corners = member.emplace<std::vector<Point>>();
+        for (const toml::node& corner : *array) {
+            const toml::array* pair = corner.as_array();
+            if (pair == nullptr || pair->size() != 2) {
+                throw Error(fmt::format("{} must be a list of places [[x, y], …] or a file name in quotes, not {}",
+                                        field.key, quoted(node)));
+            }
+            Point& place = corners.emplace_back();
+            read(field, (*pair)[0], place.x);
+            read(field, (*pair)[1], place.y);
+        }
+    }
+
     void read(const Field& field, const toml::node& node, Outlets& member) const {
         member = {};
         const toml::table* table = node.as_table();
@@ -277,6 +293,14 @@ template <class Whole>
 requires std::is_unsigned_v<Whole> std::string shown(Whole value) { return fmt::format("{}", value); }
 template <class E>
 requires std::is_enum_v<E> std::string shown(E value) { return fmt::format("\"{}\"", word_of(value)); }
+std::string shown(const Shape& shape) {
+    if (const auto* path = std::get_if<std::filesystem::path>(&shape)) return shown(*path);
+    std::string text;
+    for (const Point& p : std::get<std::vector<Point>>(shape)) {
+        text += fmt::format("{}[{}, {}]", text.empty() ? "" : ", ", p.x, p.y);
+    }
+    return fmt::format("[{}]", text);
+}
 std::string shown(const Outlets& outlets) {
     switch (outlets.rule) {
         case OutletRule::all:
@@ -354,6 +378,15 @@ const Words<MeshFile>& words(MeshFile) {
 }
 const Words<FitMethod>& words(FitMethod) {
     static const Words<FitMethod> all{{"slope-area", FitMethod::slope_area}};
+    return all;
+}
+const Words<grow::Stop>& words(grow::Stop) {
+    static const Words<grow::Stop> all{{"density", grow::Stop::density}, {"links", grow::Stop::links}};
+    return all;
+}
+const Words<grow::UpstreamLink>& words(grow::UpstreamLink) {
+    static const Words<grow::UpstreamLink> all{{"keeps_line", grow::UpstreamLink::keeps_line},
+                                               {"turns", grow::UpstreamLink::turns}};
     return all;
 }
 const Words<evolve::Pattern>& words(evolve::Pattern) {

@@ -9,11 +9,14 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "thalweg/core/index.hpp"
+#include "thalweg/core/point.hpp"
 #include "thalweg/evolve/river.hpp"
 #include "thalweg/evolve/tectonics.hpp"
+#include "thalweg/grow/grow.hpp"
 #include "thalweg/mesh/points.hpp"
 #include "thalweg/terrain/route.hpp"
 
@@ -53,6 +56,9 @@ struct Variation {
     std::vector<double> lines_width_m;  ///< one for all files of lines, or one for each
     std::vector<double> lines_value;    ///< likewise
 };
+
+/// Corners of a line or polygon, or the vector file that holds it.
+using Shape = std::variant<std::vector<Point>, std::filesystem::path>;
 
 /// Everything an experiment file can say, with the defaults for what it does not say. Each member is described once, in
 /// `describe` below: reading, overriding, writing, `--help` and the reference page all follow from there.
@@ -122,6 +128,24 @@ struct Experiment {
         std::optional<Index> checkpoint_every;
     } output;
     struct {
+        std::optional<Shape> outline;
+        std::optional<Shape> trunk;          ///< from the outlet to the source
+        std::optional<double> base_level_m;  ///< default: 0, or the DEM's height at the outlet
+        std::optional<std::filesystem::path> dem;
+    } basin;
+    struct {
+        std::optional<double> channel_maintenance_m;
+        grow::Dials dials;  ///< but for `channel_maintenance_m` and `seed`, which stand elsewhere: see `dials_of`
+        double tension_channel = 5;
+        double tension_ridge = 0;
+        double extra_tension_channel = 0;  ///< along channels
+        double extra_tension_divide = 0;   ///< along divides and the outline
+        double extra_tension_side = 0;     ///< across valley sides
+        double channel_width_m = 0;        ///< of exterior links
+        double channel_width_exponent = 0.5;
+        double roughness_m = 0;
+    } growth;
+    struct {
         std::optional<std::filesystem::path> dem;
         std::optional<std::string> source;          ///< of the fetcher's catalogue, instead of a DEM
         std::optional<std::array<double, 4>> bbox;  ///< west, south, east, north (degrees)
@@ -161,6 +185,8 @@ const Words<GeotiffKind>& words(GeotiffKind);
 const Words<HeightmapFile>& words(HeightmapFile);
 const Words<MeshFile>& words(MeshFile);
 const Words<FitMethod>& words(FitMethod);
+const Words<grow::Stop>& words(grow::Stop);
+const Words<grow::UpstreamLink>& words(grow::UpstreamLink);
 const Words<evolve::Pattern>& words(evolve::Pattern);
 const Words<terrain::Receiver>& words(terrain::Receiver);
 const Words<evolve::Flow>& words(evolve::Flow);
@@ -186,6 +212,63 @@ void describe_variation(const VariationKeys& keys, AnyVariation& v, Visit& visit
         v.lines_width_m);
     visit(Field{keys.lines_value, "", "value on the lines relative to elsewhere, for all files or one each", 0, 1e6},
           v.lines_value);
+}
+
+/// The basin to grow a network in, and the dials.
+template <class AnyExperiment, class Visit>
+void describe_growth(AnyExperiment& e, Visit& visit) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    visit(Field{"basin.outline", "",
+                "outline of the basin: corners [[x, y], …] or a vector file with one polygon; grow needs it or a DEM"},
+          e.basin.outline);
+    visit(Field{"basin.trunk", "",
+                "main stream: a straight line [[x, y], [x, y]] from the outlet on the outline to a source inside, or a "
+                "vector file with one line (its ends count); in the outline's coordinates"},
+          e.basin.trunk);
+    visit(Field{"basin.base_level_m", "m", "height of the outlet; default 0, with a DEM its own"},
+          e.basin.base_level_m);
+    visit(Field{"basin.dem", "", "DEM whose largest complete basin and main stream are taken, instead of an outline"},
+          e.basin.dem);
+    auto& g = e.growth;
+    visit(Field{"growth.channel_maintenance_m", "m",
+                "constant of channel maintenance C, basin area per channel length; grow needs it", 0, 1e9, true},
+          g.channel_maintenance_m);
+    visit(Field{"growth.mean_junction", "", "place of a tributary on its link, 0: lower, 1: upper end", 0, 1},
+          g.dials.mean_junction);
+    visit(Field{"growth.delta_junction", "", "spread of that place", 0, 1}, g.dials.delta_junction);
+    visit(Field{"growth.mean_length", "", "length of a tributary, 1: to the edge of its polygon", 1e-3, 1},
+          g.dials.mean_length);
+    visit(Field{"growth.delta_length", "", "spread of that length", 0, 1}, g.dials.delta_length);
+    visit(Field{"growth.flint_p", "m/m", "gradient of exterior links", 1e-9, 10}, g.dials.flint.p);
+    visit(Field{"growth.flint_q", "", "exponent of gradient with 2·magnitude − 1", -2, -0.05}, g.dials.flint.q);
+    visit(Field{"growth.sidewall_angle_deg", "degrees", "slope of valley sides", 1, 89}, g.dials.sidewall_angle_deg);
+    visit(Field{"growth.delta_sidewall_angle_deg", "degrees", "spread of that slope", 0, 44},
+          g.dials.delta_sidewall_angle_deg);
+    visit(Field{"growth.lower_bias", "", "share of tributaries on the obtuse side of a stream's lower third", 0, 1},
+          g.dials.lower_bias);
+    visit(
+        Field{"growth.middle_bias", "", "share on the side opposite the next one downstream in its middle third", 0, 1},
+        g.dials.middle_bias);
+    visit(Field{"growth.upstream_link", "", "whether an exterior link turns when it receives a tributary"},
+          g.dials.upstream_link);
+    visit(Field{"growth.stop", "", "stop at the drainage density wanted, or when no link can take a tributary"},
+          g.dials.stop);
+    visit(Field{"growth.tension_channel", "", "tension of the surface at channels", 0, 1e6}, g.tension_channel);
+    visit(Field{"growth.tension_ridge", "", "tension at divides and the outline", 0, 1e6}, g.tension_ridge);
+    visit(Field{"growth.extra_tension_channel", "", "tension of edges along channels beyond the mean of their ends'", 0,
+                1e6},
+          g.extra_tension_channel);
+    visit(Field{"growth.extra_tension_divide", "", "the same for edges along divides and the outline", 0, 1e6},
+          g.extra_tension_divide);
+    visit(Field{"growth.extra_tension_side", "", "the same for edges across valley sides", 0, 1e6},
+          g.extra_tension_side);
+    visit(
+        Field{"growth.channel_width_m", "m", "width of an exterior link's channel; 0: channels are lines", 0, infinity},
+        g.channel_width_m);
+    visit(Field{"growth.channel_width_exponent", "", "exponent of that width with the magnitude", 0, 2},
+          g.channel_width_exponent);
+    visit(Field{"growth.roughness_m", "m", "height of the surface's small roughness; 0: none", 0, infinity},
+          g.roughness_m);
 }
 
 /// Calls visit(field, member) for every parameter, in the order of the file.
@@ -288,6 +371,7 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"output.checkpoint_every", "",
                 "steps after which a run saves itself, so that --resume can go on; absent: never", 1, 1e9},
           e.output.checkpoint_every);
+    describe_growth(e, visit);
     visit(Field{"study.dem", "", "the DEM to be explained; a study needs it or a source"}, e.study.dem);
     visit(Field{"study.source", "", "where to fetch the DEM from, instead of study.dem (thalweg fetch --help)"},
           e.study.source);

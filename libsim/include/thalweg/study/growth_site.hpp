@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "thalweg/grow/grow.hpp"
+#include "thalweg/study/domain.hpp"
+
+namespace thalweg::study {
+
+/// Where a network grows, on a plane in metres, and where that plane lies on the map.
+struct GrowthSite {
+    grow::Basin basin;
+    double unit_m = 1;    ///< metres of the plane divided by this are map coordinates
+    std::string crs_wkt;  ///< of the map; empty: nowhere in particular
+    std::vector<std::string> warnings;
+};
+
+/// The basin that an experiment describes: its outline and trunk, or those of a DEM's largest complete catchment.
+/// Throws Error where its parameters contradict each other, files do not hold what is meant, or no network can grow in
+/// the basin (`grow::checked_basin`).
+GrowthSite growth_site(const Experiment&, const Messages&);
+
+/// A catchment's outline without the staircase of its cells, and its main stream as a trunk: the largest drainage area
+/// at every junction is followed upstream from the outlet. A trunk is straight and lies inside, so it ends at the
+/// uppermost place of that stream that is seen from the outlet with a clear distance of 1 % of the trunk's length to
+/// either side.
+GrowthSite growth_site(const Catchment&);
+
+/// The dials of an experiment. Throws Error where the constant of channel maintenance is missing.
+grow::Dials dials_of(const Experiment&);
+
+}  // namespace thalweg::study
