@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
 #include <map>
 #include <memory>
 
@@ -15,25 +17,46 @@ const std::map<std::string, study::Conditioning> conditionings{
 const std::map<std::string, study::Routing> routings{
     {"d8", study::Routing::d8}, {"dinf", study::Routing::dinf}, {"mfd", study::Routing::mfd}};
 
+const std::map<std::string, study::ChannelRule> channel_rules{{"area", study::ChannelRule::area},
+                                                              {"slope-area", study::ChannelRule::slope_area},
+                                                              {"drop", study::ChannelRule::drop}};
+
 struct Options {
     CommonOptions common;
     DemOptions dem;
-    std::string file, theta, knickpoint_prominence, heads;
+    std::string file, theta, knickpoint_prominence, heads, channels, slope_area;
     std::string conditioning = "fill";
     std::string routing = "d8";
 };
 
+/// Where channels begin: one rule, and only the numbers that it takes.
+void choose_channels(const Options& options, study::MeasureOptions& measure) {
+    const std::string rule = !options.heads.empty() ? "heads" : options.channels.empty() ? "area" : options.channels;
+    if (rule == "heads" && !options.channels.empty()) {
+        throw Error("--heads and --channels both say where channels begin: give one of them");
+    }
+    if (rule != "area" && !options.dem.channel_area_m2.empty()) {
+        throw Error(fmt::format("--channel-area-m2 is for channels by area, and --{} asks for others: give one of them",
+                                rule == "heads" ? rule : "channels " + rule));
+    }
+    if (rule != "slope-area" && !options.slope_area.empty()) {
+        throw Error("--slope-area-m2 is for --channels slope-area only");
+    }
+    measure.channels = rule == "heads" ? study::ChannelRule::heads : channel_rules.at(rule);
+    if (!options.slope_area.empty()) {
+        measure.slope_area_m2 = parse_number("--slope-area-m2", options.slope_area, Sign::positive);
+    }
+}
+
 void run(const Options& options) {
     study::MeasureOptions measure = measure_options(options.dem);
+    choose_channels(options, measure);
     measure.conditioning = conditionings.at(options.conditioning);
     measure.routing = routings.at(options.routing);
     if (!options.theta.empty()) measure.theta = parse_number("--theta", options.theta, Sign::positive);
     if (!options.knickpoint_prominence.empty()) {
         measure.knickpoint_prominence_m =
             parse_number("--knickpoint-prominence-m", options.knickpoint_prominence, Sign::positive);
-    }
-    if (!options.heads.empty() && !options.dem.channel_area_m2.empty()) {
-        throw Error("--heads and --channel-area-m2 both say where channels begin: give one of them");
     }
     const io::ReadOptions read = read_options(options.dem);
     run_into_folder(options.common, "analyze", [&](const auto& folder, const study::Messages& m) {
@@ -59,6 +82,13 @@ void add_analyze(CLI::App& app) {
                      "how water is followed for the drainage area: d8, dinf or mfd (the network follows d8 always)")
         ->check(CLI::IsMember({"d8", "dinf", "mfd"}))
         ->capture_default_str();
+    command
+        ->add_option("--channels", options->channels,
+                     "where channels begin: area (--channel-area-m2), slope-area (area times slope squared, "
+                     "--slope-area-m2) or drop (the least area with constant stream drops) [default: area]")
+        ->check(CLI::IsMember({"area", "slope-area", "drop"}));
+    command->add_option("--slope-area-m2", options->slope_area,
+                        "area times slope squared where channels begin [default: by constant stream drops]");
     command->add_option("--heads", options->heads,
                         "points where channels begin, in any vector format GDAL reads, instead of a drainage area");
     command->add_option("--theta", options->theta, "concavity for chi and ksn [default: 0.45]");

@@ -35,9 +35,16 @@ TEST_CASE("The threshold is the smallest at which the drops agree, whatever the 
     CHECK(threshold_by_drops(std::vector{test(400, 0.1), test(100, -5), test(200, 1.9)}) == 200.0);
     CHECK(!threshold_by_drops(std::vector{test(100, -5), test(200, 2), test(400, nan)}));
     CHECK(!threshold_by_drops({}));
+    const std::vector crossing{test(100, 9),  test(200, 1),  test(400, -3),
+                               test(800, -1), test(1600, 0), test(3200, nan)};
+    CHECK(threshold_by_drops(crossing) == 200.0);
+    CHECK(lasting_threshold_by_drops(crossing) == 800.0);
+    CHECK(lasting_threshold_by_drops(std::vector{test(400, 1), test(100, 1), test(200, -1)}) == 100.0);
+    CHECK(!lasting_threshold_by_drops(std::vector{test(100, 1), test(200, 2), test(400, nan)}));
 }
 
-TEST_CASE("Where all streams fall alike the test agrees in 95 of 100 rivers, and where the first fall thrice it does not") {
+TEST_CASE(
+    "Where all streams fall alike the test agrees in 95 of 100 rivers, and where the first fall thrice it does not") {
     int alike = 0, unlike = 0;
     for (std::uint32_t seed = 0; seed < 200; ++seed) {
         Random random(9, seed);

@@ -27,6 +27,7 @@ Json analyzed(const Raster& raster, const MeasureOptions& options, const std::fi
 
 MeasureOptions from_heads(std::vector<Index> cells) {
     MeasureOptions options;
+    options.channels = ChannelRule::heads;
     options.heads = ChannelHeads{.cells = std::move(cells)};
     return options;
 }
@@ -76,7 +77,7 @@ TEST_CASE("A single head makes one river down to the edge, of complete catchment
     CHECK(c["max_strahler"] == 1);
     REQUIRE(s["basins"].size() == 1);
     CHECK(s["basins"][0]["area_m2"] == 3500.0);
-    CHECK(s["notes"].dump().find("begin at given points") != std::string::npos);
+    CHECK(s["notes"].dump().find("do not begin at a drainage area") != std::string::npos);
 }
 
 TEST_CASE("Heads in cut terrain alone leave nothing to count, and a note says so", "[heads]") {

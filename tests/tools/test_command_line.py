@@ -136,6 +136,10 @@ class CommandLine(unittest.TestCase):
         self.refused("analyze", DEM, "--heads", self.here / "nowhere.gpkg", *out, saying="nowhere.gpkg")
         self.refused("analyze", DEM, "--heads", DEM, *out, saying="no vector file")
         self.refused("analyze", DEM, "--heads", heads, "--channel-area-m2", "1e5", *out, saying="--channel-area-m2")
+        self.refused("analyze", DEM, "--heads", heads, "--channels", "drop", *out, saying="--channels")
+        self.refused("analyze", DEM, "--channels", "drop", "--channel-area-m2", "1e5", *out, saying="--channels drop")
+        self.refused("analyze", DEM, "--slope-area-m2", "1e5", *out, saying="--slope-area-m2")
+        self.refused("analyze", DEM, "--channels", "guess", *out, saying="guess")
         heads.write_text(json.dumps({"type": "FeatureCollection", "features": [place(10, 50)]}))
         self.refused("analyze", DEM, "--heads", heads, *out, saying="(10, 50)")
 

@@ -63,6 +63,17 @@ std::optional<double> threshold_by_drops(std::span<const DropTest> tests) {
     return std::nullopt;
 }
 
+std::optional<double> lasting_threshold_by_drops(std::span<const DropTest> tests) {
+    std::vector<DropTest> downwards(tests.begin(), tests.end());
+    std::ranges::sort(downwards, std::ranges::greater{}, &DropTest::threshold);
+    std::optional<double> lasting;
+    for (const DropTest& test : downwards) {
+        if (std::abs(test.t) >= 2) break;
+        if (std::abs(test.t) < 2) lasting = test.threshold;
+    }
+    return lasting;
+}
+
 std::vector<double> slope_area_product(const terrain::FlowGraph& graph, std::span<const double> drainage_area_m2,
                                        std::span<const double> elevation_m) {
     std::vector<double> product(graph.size(), 0);

@@ -44,6 +44,33 @@ Json heads_json(const ChannelHeads& heads) {
     return {{"given", heads.given}, {"outside", heads.outside}, {"merged", heads.merged}};
 }
 
+/// What the choice of channels rests on.
+void add_evidence(Json& channels, const ChannelEvidence& evidence) {
+    if (evidence.slope_area_m2) channels["threshold_slope_area_m2"] = *evidence.slope_area_m2;
+    if (evidence.drop_tests.empty()) return;
+    Json tests = Json::array();
+    for (const channel::DropTest& test : evidence.drop_tests) {
+        tests.push_back({{"threshold_m2", test.threshold},
+                         {"first_order_streams", test.first_order},
+                         {"higher_order_streams", test.higher_order},
+                         {"first_order_drop_m", number(test.first_mean_m)},
+                         {"higher_order_drop_m", number(test.higher_mean_m)},
+                         {"t", number(test.t)}});
+    }
+    channels["drop_analysis"] = tests;
+}
+
+/// Where drops of channels that begin finer or coarser than the choice speak against it.
+void note_crossing_drops(const ChannelEvidence& evidence, std::vector<std::string>& notes) {
+    const auto chosen = channel::threshold_by_drops(evidence.drop_tests);
+    const auto lasting = channel::lasting_threshold_by_drops(evidence.drop_tests);
+    if (!chosen || lasting == chosen) return;
+    notes.push_back(fmt::format(
+        "channels: the mean drops of streams agree at a threshold of {:g} m2 but differ again above it{}: look "
+        "at drop_analysis before trusting the choice",
+        *chosen, lasting ? fmt::format(", and agree from {:g} m2 on", *lasting) : ""));
+}
+
 const char* routing_name(Routing routing) {
     constexpr std::array names{"d8", "dinf", "mfd"};
     return names[static_cast<std::size_t>(routing)];
@@ -122,14 +149,18 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
     std::vector<std::string> notes = dem.warnings;
     Json summary = terrain_json(input_of(dem, m), m.statistics, positions(dem.raster),
                                 conditioning_json(m.conditioning, options.conditioning), notes);
-    for (const std::string& note : notes) {
-        if (note.starts_with("channels:")) messages.warning(note);
-    }
+    add_evidence(summary["channels"], m.channel_evidence);
+    explain_null("channels.drop_analysis", summary["channels"].value("drop_analysis", Json::array()),
+                 "t needs two streams of the first order and two of higher ones", notes);
+    note_crossing_drops(m.channel_evidence, notes);
     if (options.heads) summary["channels"]["heads"] = heads_json(*options.heads);
     summary["measured_on"] = "raster";
     summary["routing"] = routing_name(options.routing);
     summary["slope_area"]["segment_drop_m"] = m.segment_drop_m;
     summary["slope_area"]["vertical_quantum_m"] = m.vertical_quantum_m;
+    for (const std::string& note : notes) {
+        if (note.starts_with("channels:")) messages.warning(note);
+    }
     summary["notes"] = notes;
     messages.progress("writing");
     write_rasters(dem.raster, m, folder);

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "study/channel_choice.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/terrain/accumulate.hpp"
 #include "thalweg/terrain/d_infinity.hpp"
@@ -25,18 +26,6 @@ double total_area(const RoutedTerrain& terrain) {
     double area = 0;
     for (const Index node : terrain.graph.order) area += terrain.cell_area_m2[node];
     return area;
-}
-
-/// What may enter statistics: complete catchments, or (empty) everything.
-std::span<const std::uint8_t> nodes_in_use(const RoutedTerrain& terrain, const MeasureOptions& options) {
-    if (options.edge_basins == terrain::EdgeBasins::keep) return {};
-    return terrain.complete;
-}
-
-/// Of the channels those that may enter statistics.
-std::vector<std::uint8_t> channels_in_use(std::vector<std::uint8_t> channels, std::span<const std::uint8_t> used) {
-    for (std::size_t node = 0; node < used.size(); ++node) channels[node] &= used[node];
-    return channels;
 }
 
 /// Basins of the statistics: from the threshold on or, where channels have heads, all that hold a channel.
@@ -214,7 +203,7 @@ std::vector<channel::SlopeAreaPoint> segments(const RoutedTerrain& carved, Raste
     m.vertical_quantum_m = channel::vertical_quantum(ground_m);
     m.segment_drop_m = std::max(0.025 * relief, 3 * m.vertical_quantum_m);
     if (!(m.segment_drop_m > 0)) return {};
-    const auto channels = channels_in_use(channel_nodes(carved, options, threshold_m2), nodes_in_use(carved, options));
+    const auto channels = channels_in_use(carved, options, threshold_m2);
     return channel::fixed_drop_segments(carved.graph, carved.drainage_area_m2, carved.elevation_m, channels,
                                         {.drop_m = m.segment_drop_m, .smallest_drop_m = 3 * m.vertical_quantum_m});
 }
@@ -261,14 +250,6 @@ double default_channel_area(double area_m2) {
     return best;
 }
 
-std::vector<std::uint8_t> channel_nodes(const RoutedTerrain& terrain, const MeasureOptions& options,
-                                        double threshold_m2) {
-    if (options.heads) return channel::channels_from_heads(terrain.graph, options.heads->cells);
-    if (terrain.divided_area_m2.empty()) return channel::channels_by_area(terrain.drainage_area_m2, threshold_m2);
-    // Divided flow may lose water along a path of the graph; a channel that has begun goes on.
-    return channel::channels_by_area(terrain::largest_upstream(terrain.graph, terrain.divided_area_m2), threshold_m2);
-}
-
 Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_m, const MeasureOptions& options,
                    std::vector<channel::SlopeAreaPoint> slopes) {
     const double threshold = options.channel_area_m2.value_or(default_channel_area(total_area(terrain)));
@@ -276,7 +257,7 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
     Statistics s;
     s.hypsometry = terrain::hypsometry(ground_m, terrain.cell_area_m2);
     const auto all_channels = channel_nodes(terrain, options, threshold);
-    const auto channels = channels_in_use(all_channels, nodes_in_use(terrain, options));
+    const auto channels = channels_in_use(terrain, options, threshold);
     s.strahler_of = channel::strahler_orders(terrain.graph, channels);
     s.shreve_of = channel::shreve_magnitudes(terrain.graph, channels);
     s.network = channel::stream_network(terrain.graph, channels, terrain.drainage_area_m2, terrain.elevation_m);
@@ -288,7 +269,7 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
         std::accumulate(basins.begin(), basins.end(), 0.0, [](double sum, const auto& b) { return sum + b.area_m2; });
 
     s.channels = channel_statistics(s, options.heads ? nan : threshold, basin_area);
-    s.channels.rule = options.heads ? ChannelRule::heads : ChannelRule::area;
+    s.channels.rule = options.channels;
     s.channels.source_area_m2 = source_areas(terrain, channels);
     s.channels.nodes = static_cast<Index>(count(channels));
     const std::size_t everywhere = count(all_channels);
@@ -304,7 +285,7 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
 
 ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions& options, double threshold_m2,
                           double drop_m) {
-    const auto channels = channels_in_use(channel_nodes(carved, options, threshold_m2), nodes_in_use(carved, options));
+    const auto channels = channels_in_use(carved, options, threshold_m2);
     ChiStatistics c{.theta = options.theta,
                     .reference_area_m2 = 1e6,
                     .profile = {},
@@ -350,7 +331,7 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
 
     m.valid_cells = static_cast<Index>(m.terrain.graph.order.size());
     m.area_m2 = total_area(m.terrain);
-    MeasureOptions resolved = options;
+    MeasureOptions resolved = with_channels_chosen(m.terrain, options, m.channel_evidence);
     if (!resolved.channel_area_m2) resolved.channel_area_m2 = default_channel_area(m.area_m2);
     auto slopes = segments(carved, m, resolved, *resolved.channel_area_m2, raster.values);
     m.statistics = measure(m.terrain, raster.values, resolved, std::move(slopes));

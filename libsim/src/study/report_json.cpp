@@ -43,7 +43,7 @@ Json hypsometry_json(const terrain::Hypsometry& h) {
 }
 
 const char* rule_name(ChannelRule rule) {
-    constexpr std::array names{"area", "heads"};
+    constexpr std::array names{"area", "heads", "slope-area", "drop"};
     return names[static_cast<std::size_t>(rule)];
 }
 
@@ -116,8 +116,9 @@ Json basins_json(const Statistics& s, const PositionOf& position) {
 
 void explain_nulls(const Statistics& s, std::vector<std::string>& notes) {
     if (!std::isfinite(s.hypsometry.integral)) notes.push_back("hypsometry: the terrain has no relief");
-    if (s.channels.rule == ChannelRule::heads) {
-        notes.push_back("channels: they begin at given points, so there is no threshold_area_m2");
+    const bool begins_by_area = s.channels.rule == ChannelRule::area || s.channels.rule == ChannelRule::drop;
+    if (!begins_by_area) {
+        notes.push_back("channels: they do not begin at a drainage area, so there is no threshold_area_m2");
         if (s.basins.empty()) {
             notes.push_back(
                 "channels: no complete catchment holds a channel, so there are no network statistics; use "

@@ -28,6 +28,10 @@ std::vector<DropTest> drop_analysis(const terrain::FlowGraph&, std::span<const d
 /// ones (|t| < 2; Tarboton, Bras & Rodriguez-Iturbe 1991): the finest network that still obeys the law of constant drops.
 std::optional<double> threshold_by_drops(std::span<const DropTest>);
 
+/// The smallest threshold from which on no test says that the drops differ. Where it lies above `threshold_by_drops`,
+/// the mean drops only cross there, from first-order streams that fall further to such that fall less.
+std::optional<double> lasting_threshold_by_drops(std::span<const DropTest>);
+
 /// The slope–area product A·S² (m²; Montgomery & Dietrich 1992), the largest at or upstream of each node, so that a
 /// channel once begun goes on. S is the slope to the receiver on the conditioned surface; 0 where nothing falls.
 std::vector<double> slope_area_product(const terrain::FlowGraph&, std::span<const double> drainage_area_m2,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "thalweg/channel/concavity.hpp"
+#include "thalweg/channel/drop_analysis.hpp"
 #include "thalweg/channel/extent.hpp"
 #include "thalweg/channel/horton.hpp"
 #include "thalweg/channel/knickpoints.hpp"
@@ -39,8 +40,10 @@ enum class Routing {
 
 /// What decides where channels begin.
 enum class ChannelRule {
-    area,  ///< the drainage area
-    heads  ///< points given by the user
+    area,        ///< the drainage area
+    heads,       ///< points given by the user
+    slope_area,  ///< drainage area times slope squared (Montgomery & Dietrich 1992)
+    drop         ///< the least drainage area with constant stream drops (Broscoe 1959; Tarboton et al. 1991)
 };
 
 /// Cells where channels begin, as somebody mapped them.
@@ -55,7 +58,9 @@ struct MeasureOptions {
     Conditioning conditioning = Conditioning::fill;
     Routing routing = Routing::d8;
     std::optional<double> channel_area_m2;  ///< default: 0.1 % of the area, rounded to 1-2-5
-    std::optional<ChannelHeads> heads{};    ///< channels begin at these cells instead
+    ChannelRule channels = ChannelRule::area;
+    std::optional<ChannelHeads> heads{};    ///< for ChannelRule::heads
+    std::optional<double> slope_area_m2{};  ///< for ChannelRule::slope_area; default: by constant drops
     terrain::EdgeBasins edge_basins = terrain::EdgeBasins::drop;
     std::optional<Index> catchment_outlet{};          ///< the raster is one catchment that leaves here: its
                                                       ///< rim is a divide, not a cut
@@ -84,7 +89,7 @@ struct BasinStatistics {
 /// Channels and what is counted on them. Lengths in metres, areas in m².
 struct ChannelStatistics {
     ChannelRule rule;
-    double threshold_area_m2;                ///< NaN where channels begin at given cells
+    double threshold_area_m2;                ///< NaN where channels do not begin by area
     std::array<double, 3> source_area_m2{};  ///< least, median and largest drainage area where channels begin
     double basin_area_m2;                    ///< area of the basins used
     double share_used;                       ///< of the channel nodes, in complete catchments
@@ -152,6 +157,12 @@ std::vector<std::uint8_t> channel_nodes(const RoutedTerrain&, const MeasureOptio
 /// `drop_m`, channels from `threshold_m2`.
 ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions&, double threshold_m2, double drop_m);
 
+/// On what the choice of channels rests.
+struct ChannelEvidence {
+    std::vector<channel::DropTest> drop_tests{};  ///< empty where nothing was left to be chosen
+    std::optional<double> slope_area_m2{};        ///< threshold of A·S², where that is the rule
+};
+
 /// How a DEM was made to drain.
 struct ConditioningReport {
     Index pits = 0;  ///< lakes: pits (or flats) that drained nowhere
@@ -170,6 +181,7 @@ struct RasterMeasurement {
     std::vector<double> carved_elevation_m;  ///< along which slopes are measured
     double segment_drop_m = 0;               ///< of the slope–area segments
     double vertical_quantum_m = 0;
+    ChannelEvidence channel_evidence;
     Statistics statistics;
 };
 
