@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "landscapes.hpp"
+#include "series.hpp"
 
 using namespace thalweg;
 using namespace thalweg::validation;
@@ -13,7 +14,7 @@ using namespace thalweg::validation;
 namespace {
 
 template <class Topology>
-void come_to_rest(const char* name, const Topology& topology, double n, double g) {
+double come_to_rest(const char* name, const Topology& topology, double n, double g) {
     const double uplift = 1e-3, m = 0.5 * n, k = uplift / (std::pow(1e6, m) * std::pow(0.03, n));
     const evolve::River river{.k = k, .m = m, .n = n, .g = g};
     const evolve::Setting setting = support::island(topology, uplift);
@@ -43,6 +44,7 @@ void come_to_rest(const char* name, const Topology& topology, double n, double g
     CHECK(judged > 0.9 * topology.size());
     CHECK(result.unconverged_sediment_steps == 0);
     CHECK(std::abs(result.mass.relative_residual()) < 1e-9);
+    return worst;
 }
 
 }  // namespace
@@ -50,10 +52,12 @@ void come_to_rest(const char* name, const Topology& topology, double n, double g
 TEST_CASE("Erosion and deposition rest on slopes steeper by (1 + G)^(1/n), to 1e-6, on a TIN and on a raster") {
     const Mesh mesh = island_mesh(3000, 3);
     const Grid grid = island_grid(55);
+    Categories errors;
     for (const double n : {0.7, 1.0, 1.5}) {
         for (const double g : {0.0, 0.5, 1.0, 2.0}) {
-            come_to_rest("TIN", mesh, n, g);
-            come_to_rest("raster", grid, n, g);
+            errors.add(fmt::format("TIN, G = {:g}", g), come_to_rest("TIN", mesh, n, g));
+            errors.add(fmt::format("raster, G = {:g}", g), come_to_rest("raster", grid, n, g));
         }
     }
+    write_series("deposition_slopes", errors);
 }

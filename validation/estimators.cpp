@@ -85,8 +85,9 @@ void judge(const char* of, const char* what, const std::vector<double>& values, 
 
 TEST_CASE("Concavity and steepness of rasters made to a law come out near it, by each rule") {
     const Grid grid = plane_grid(120, 120, cell_m, cell_m);
-    for (const Case c : {Case{"as they are", 0.45, 0, 0}, Case{"as they are", 0.6, 0, 0}, Case{"scatter 0.3", 0.45, 0.3, 0},
-                         Case{"whole metres", 0.45, 0, 1}, Case{"scatter, whole metres", 0.45, 0.3, 1}}) {
+    for (const Case c :
+         {Case{"as they are", 0.45, 0, 0}, Case{"as they are", 0.6, 0, 0}, Case{"scatter 0.3", 0.45, 0.3, 0},
+          Case{"whole metres", 0.45, 0, 1}, Case{"scatter, whole metres", 0.45, 0.3, 1}}) {
         Found found;
         for (std::uint64_t seed = 1; seed <= seeds; ++seed) observe(grid, c, seed, found);
         const bool clean = c.scatter == 0 && c.rounding_m == 0;
@@ -148,8 +149,10 @@ TEST_CASE("Knickpoints of faster uplift are found in most rivers that have one, 
         share_found.push_back(static_cast<double>(found) / having);
         share_false.push_back(static_cast<double>(false_ones) / std::max(1, all));
     }
-    fmt::print("knickpoints: {:.0f} % of the streams that have one, χ at {:.3f} (median, spread {:.3f}) of the wave's, {:.0f} % false\n",
-               100 * mean(share_found), quantile(place, 0.5), standard_deviation(place), 100 * mean(share_false));
+    fmt::print(
+        "knickpoints: {:.0f} % of the streams that have one, χ at {:.3f} (median, spread {:.3f}) of the wave's, {:.0f} "
+        "% false\n",
+        100 * mean(share_found), quantile(place, 0.5), standard_deviation(place), 100 * mean(share_false));
     CHECK(mean(share_found) > 0.85);
     CHECK(quantile(place, 0.5) == Approx(1).margin(0.07));
     CHECK(mean(share_false) < 0.15);

@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "landscapes.hpp"
+#include "series.hpp"
 #include "thalweg/evolve/hillslope.hpp"
 
 using namespace thalweg;
@@ -107,6 +108,9 @@ void refine_steady(const char* name, const evolve::Hillslope& hillslope, double 
     }
     judge(fmt::format("{}, raster", name).c_str(), on_raster, 1.85);
     judge(fmt::format("{}, TIN", name).c_str(), on_tin, 1.7);
+    write_series(
+        hillslope.critical_slope > 0 ? "creep_critical" : "creep_linear",
+        {{"cells_along", std::vector{16.0, 32.0, 64.0}}, {"raster_error_m", on_raster}, {"TIN_error_m", on_tin}});
 }
 
 }  // namespace
@@ -167,6 +171,10 @@ TEST_CASE("A Gaussian spreads as it should, at second order in space and first i
     judge("Gaussian, raster", on_raster, 1.9);
     judge("Gaussian, TIN", on_tin, 1.8);
     judge("Gaussian, in time", in_time, 0.8);
+    write_series(
+        "gaussian_in_space",
+        {{"cells_along", std::vector{24.0, 48.0, 96.0}}, {"raster_error_m", on_raster}, {"TIN_error_m", on_tin}});
+    write_series("gaussian_in_time", {{"steps", std::vector{2.0, 4.0, 8.0}}, {"raster_error_m", in_time}});
     CHECK(on_raster.back() < 0.02);
     CHECK(on_tin.back() < 0.05);
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "landscapes.hpp"
+#include "series.hpp"
 #include "thalweg/channel/slope_area.hpp"
 #include "thalweg/infer/slope_area_fit.hpp"
 #include "thalweg/surface/heightfield.hpp"
@@ -73,6 +74,7 @@ void report(const char* how, double m, double n, const Bias& b) {
 
 TEST_CASE("k and m come back from nodes to 0.001 and 1 %, from a raster run's heights to 0.02 and 10 %") {
     const Grid grid = island_grid(150);
+    Categories off;
     for (const double n : {1.0, 1.5}) {
         for (const double m : {0.4 * n, 0.5 * n}) {
             for (const std::uint64_t seed : {1, 2, 3}) {
@@ -89,9 +91,13 @@ TEST_CASE("k and m come back from nodes to 0.001 and 1 %, from a raster run's he
                 }
                 CHECK(std::abs(dem.m) < 0.02);
                 CHECK(std::abs(dem.k_at_reference) < 0.1);
+                off.add("TIN nodes", std::abs(tin.m));
+                off.add("raster nodes", std::abs(nodes.m));
+                off.add("raster heights as a DEM", std::abs(dem.m));
             }
         }
     }
+    write_series("recovery_of_m", off);
 }
 
 TEST_CASE("A TIN drawn on a raster loses part of the truth, and how much is known") {

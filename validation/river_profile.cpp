@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One river whose answer is known: the steady profile under Hack's areas, waves that travel up it, and the time it takes
-// to answer.
+// One river whose answer is known: the steady profile under Hack's areas, waves that travel up it, and the time it
+// takes to answer.
 #include <fmt/format.h>
 
 #include <catch2/catch.hpp>
@@ -54,7 +54,8 @@ struct Wave {
     double mid_m, width_m;  ///< where half has come; from where 90 % has to where 10 % has
 };
 
-Wave wave_after_fall(Index steps, const evolve::River& law, double uplift, double fall_m, double years, double step_yr) {
+Wave wave_after_fall(Index steps, const evolve::River& law, double uplift, double fall_m, double years,
+                     double step_yr) {
     SingleRiver river = single_river(steps, length_m, uplift, same_area);
     const double steep = std::pow(uplift / (law.k * std::pow(trunk_area_m2, law.m)), 1 / law.n);
     for (Index node = 0; node <= steps; ++node) river.landscape.elevation_m[node] = steep * river.distance(node);
@@ -62,7 +63,8 @@ Wave wave_after_fall(Index steps, const evolve::River& law, double uplift, doubl
     river.landscape.elevation_m[0] -= fall_m;
     run_for(river, law, years, step_yr);
     std::vector<double> share;
-    for (Index node = 0; node <= steps; ++node) share.push_back((before[node] - river.landscape.elevation_m[node]) / fall_m);
+    for (Index node = 0; node <= steps; ++node)
+        share.push_back((before[node] - river.landscape.elevation_m[node]) / fall_m);
     return {.mid_m = river.step_m * crossing(share, 0.5),
             .width_m = river.step_m * (crossing(share, 0.1) - crossing(share, 0.9))};
 }
@@ -106,7 +108,8 @@ TEST_CASE("A fall of base level climbs at k·A^m where n is 1, and its width shr
         width.push_back(wave.width_m);
         off.push_back(std::abs(wave.mid_m / years / speed - 1));
     }
-    write_series("knickpoint_width", {{"spacing_m", spacing}, {"width_m", width}, {"speed_error", off}});
+    write_series("knickpoint_width", {{"spacing_m", spacing}, {"width_m", width}});
+    write_series("knickpoint_speed", {{"spacing_m", spacing}, {"share_of_the_speed", off}});
 }
 
 TEST_CASE("Where n is 2, faster uplift climbs as a shock at (u2 − u1)/(S2 − S1) and a small wave at n·k·A^m·S^(n−1)") {
@@ -133,6 +136,10 @@ TEST_CASE("Where n is 2, faster uplift climbs as a shock at (u2 − u1)/(S2 − 
     const Wave wave = wave_after_fall(steps, law, fast, 0.02, years, 500);
     fmt::print("small wave, n 2: speed {:.5f} m/yr, theory {:.5f}\n", wave.mid_m / years, ripple);
     CHECK(wave.mid_m / years == Approx(ripple).epsilon(0.01));
+    Categories off;
+    off.add("shock", std::abs(speed / shock - 1));
+    off.add("small wave", std::abs(wave.mid_m / years / ripple - 1));
+    write_series("speeds_n_2", off);
 }
 
 TEST_CASE("A river raised from the plain stands at u·min(t, τ(x)) where n is 1") {
@@ -160,4 +167,51 @@ TEST_CASE("A river raised from the plain stands at u·min(t, τ(x)) where n is 1
     }
     CHECK(error.back() < 0.005);
     write_series("response_time", {{"spacing_m", spacing}, {"mean_error_share_of_relief", error}});
+}
+
+namespace {
+
+/// Mean error of a river whose base level or uplift follows a history, over its relief at rest. Where n is 1 heights
+/// are carried upstream unchanged, at k·A^m: h(x, t) = b(t − τ(x)) + ∫ u dt from t − τ(x) to t.
+double mean_error_under_history(Index steps, const evolve::History& level_m, const evolve::History& factor) {
+    const HackAreas areas;
+    const evolve::River law{.k = 2e-6, .m = 0.45, .n = 1};
+    const double uplift = 5e-4, response = integral_of_area(areas, law.m, length_m) / law.k, years = 0.9 * response;
+    SingleRiver river = single_river(steps, length_m, uplift, areas);
+    const auto exact = [&](Index node, double time_yr) {
+        const double own = integral_of_area(areas, law.m, river.distance(node)) / law.k, since = time_yr - own;
+        const double level = level_m.value.empty() ? 0 : evolve::value_at(level_m, since);
+        const double mean = own > 0 && !factor.value.empty() ? evolve::mean_between(factor, since, time_yr) : 1;
+        return level + uplift * own * mean;
+    };
+    for (Index node = 0; node <= steps; ++node) river.landscape.elevation_m[node] = exact(node, 0);
+    river.setting.base_level_m = level_m;
+    river.setting.uplift_factor = factor;
+    run_for(river, law, years, response / (4.0 * steps));
+    double sum = 0;
+    for (Index node = 0; node <= steps; ++node) sum += std::abs(river.landscape.elevation_m[node] - exact(node, years));
+    return sum / (uplift * response) / (steps + 1);
+}
+
+}  // namespace
+
+TEST_CASE("Base-level and uplift histories climb a river unchanged where n is 1, to first order in the spacing") {
+    // Base level falls, stands, and rises slower than the land; uplift swells, jumps and ebbs.
+    const evolve::History level{.time_yr = {5e5, 1.5e6, 2.5e6, 4.5e6}, .value = {0, -150, -150, 200}};
+    const evolve::History factor{.time_yr = {5e5, 1.5e6, 3e6, 3e6, 5e6}, .value = {1, 2, 2, 0.5, 1}};
+    std::vector<double> spacing, by_level, by_uplift;
+    for (const Index steps : {100u, 200u, 400u, 800u}) {
+        spacing.push_back(length_m / steps);
+        by_level.push_back(mean_error_under_history(steps, level, {}));
+        by_uplift.push_back(mean_error_under_history(steps, {}, factor));
+        fmt::print("histories: {:4} nodes, mean error {:.2e} (base level) and {:.2e} (uplift) of the relief\n", steps,
+                   by_level.back(), by_uplift.back());
+    }
+    for (const auto& error : {by_level, by_uplift}) {
+        CHECK(std::log2(error.front() / error.back()) / 3 > 0.8);
+        CHECK(error.back() < 2e-3);
+    }
+    write_series(
+        "histories",
+        {{"spacing_m", spacing}, {"base_level_share_of_relief", by_level}, {"uplift_share_of_relief", by_uplift}});
 }

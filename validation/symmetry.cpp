@@ -8,6 +8,7 @@
 #include <map>
 
 #include "landscapes.hpp"
+#include "series.hpp"
 #include "thalweg/core/statistics.hpp"
 #include "thalweg/terrain/accumulate.hpp"
 #include "thalweg/terrain/hypsometry.hpp"
@@ -56,55 +57,88 @@ std::map<std::string, std::vector<Boundary>> boundaries(const Grid& grid) {
     return all;
 }
 
-evolve::Landscape after_one_step(const Grid& grid, const evolve::River& law, const evolve::Setting& setting,
+evolve::Landscape after_one_step(const Grid& grid, const evolve::Model& model, const evolve::Setting& setting,
                                  evolve::Landscape landscape) {
-    const auto drainage = evolve::drain(grid, landscape, setting, law.receiver);
-    evolve::erode(grid, drainage, law, setting, 2e4, landscape);
+    evolve::simulate(grid, model, setting, {.step_yr = 2e4, .max_steps = 1, .convergence = 0}, landscape);
     return landscape;
+}
+
+/// Every process alone and together, by name.
+std::map<std::string, evolve::Model> models(double n, double talus_slope) {
+    const evolve::River river{.k = 1e-3 / std::pow(0.05 * 300, n), .m = 0.5 * n, .n = n};
+    evolve::Model talus{river}, sediment{river}, divided{river}, creep{river}, all{river};
+    talus.river.talus_slope = all.river.talus_slope = talus_slope;
+    sediment.river.g = all.river.g = 1;
+    divided.river.flow = all.river.flow = evolve::Flow::multiple;
+    creep.hillslope.diffusivity_m2_per_yr = all.hillslope.diffusivity_m2_per_yr = 0.02;
+    return {{"rivers", {river}},       {"talus", talus}, {"sediment", sediment},
+            {"divided flow", divided}, {"creep", creep}, {"all", all}};
+}
+
+/// Largest difference between a step from a moved start and the moved result of a step, relative to the height or 1 m,
+/// over the square's seven symmetries.
+double worst_of_one_step(const Grid& grid, const evolve::Model& model, const evolve::Setting& setting) {
+    const auto start = support::rough_start(setting, 50, 11);
+    const auto plain = after_one_step(grid, model, setting, start);
+    double worst = 0;
+    for (int symmetry = 1; symmetry < 8; ++symmetry) {
+        evolve::Setting turned = setting;
+        turned.boundary = moved_values(setting.boundary, symmetry);
+        turned.rainfall = moved_values(setting.rainfall, symmetry);
+        const auto there =
+            after_one_step(grid, model, turned, {.elevation_m = moved_values(start.elevation_m, symmetry)});
+        const auto expected = moved_values(plain.elevation_m, symmetry);
+        for (Index node = 0; node < grid.size(); ++node) {
+            const double off = std::abs(there.elevation_m[node] - expected[node]);
+            worst = std::max(worst, off / std::max(1.0, std::abs(expected[node])));
+        }
+    }
+    return worst;
 }
 
 struct Shape {
     double mean_m, highest_m, integral;
 };
 
-Shape run_to_rest(const Grid& grid, const evolve::River& law, evolve::Landscape landscape) {
-    const evolve::Setting setting = support::island(grid, 1e-3);
+Shape run_to_rest(const Grid& grid, const evolve::Setting& setting, evolve::Landscape landscape) {
+    const evolve::River law{.k = 2e-6, .m = 0.5, .n = 1};
     evolve::simulate(grid, {law}, setting, {.step_yr = 1e5, .max_steps = 2000}, landscape);
     const auto h = terrain::hypsometry(landscape.elevation_m, terrain::cell_areas(grid));
     return {h.mean_m, h.maximum_m, h.integral};
 }
 
+struct Ensemble {
+    std::vector<double> mean_m, highest_m, integral;
+
+    void add(const Shape& shape) {
+        mean_m.push_back(shape.mean_m);
+        highest_m.push_back(shape.highest_m);
+        integral.push_back(shape.integral);
+    }
+};
+
 }  // namespace
 
 TEST_CASE("One step from a surface without ties commutes with the square's eight symmetries, whatever the outlets") {
     const Grid grid = plane_grid(across, across, 100, 100);
+    Categories errors;
     for (const auto& [name, boundary] : boundaries(grid)) {
+        evolve::Setting setting = support::island(grid, 1e-3);
+        setting.boundary = boundary;
+        for (Index node = 0; node < grid.size(); ++node) setting.rainfall[node] = 0.5 + uniform_at(3, 1, node);
         for (const double n : {0.7, 1.0, 2.0}) {
-            for (const double talus : {std::numeric_limits<double>::infinity(), 0.6}) {
-                const evolve::River law{.k = 1e-3 / std::pow(0.05 * 300, n), .m = 0.5 * n, .n = n, .talus_slope = talus};
-                evolve::Setting setting = support::island(grid, 1e-3);
-                setting.boundary = boundary;
-                for (Index node = 0; node < grid.size(); ++node) setting.rainfall[node] = 0.5 + uniform_at(3, 1, node);
-                const auto start = support::rough_start(setting, 50, 11);
-                const auto plain = after_one_step(grid, law, setting, start);
-                double worst = 0;
-                for (int symmetry = 1; symmetry < 8; ++symmetry) {
-                    evolve::Setting turned = setting;
-                    turned.boundary = moved_values(setting.boundary, symmetry);
-                    turned.rainfall = moved_values(setting.rainfall, symmetry);
-                    const auto there =
-                        after_one_step(grid, law, turned, {.elevation_m = moved_values(start.elevation_m, symmetry)});
-                    const auto expected = moved_values(plain.elevation_m, symmetry);
-                    for (Index node = 0; node < grid.size(); ++node) {
-                        worst = std::max(worst, std::abs(there.elevation_m[node] / expected[node] - 1));
-                        if (expected[node] == 0) worst = std::max(worst, std::abs(there.elevation_m[node]));
-                    }
-                }
-                INFO(name << " n " << n << " talus " << talus);
+            for (const auto& [process, model] : models(n, 0.2)) {
+                const double worst = worst_of_one_step(grid, model, setting);
+                INFO(name << ", " << process << ", n " << n);
                 CHECK(worst < 1e-12);
+                errors.add(fmt::format("{}, {}", name, process), worst);
             }
         }
     }
+    for (const auto& [name, values] : errors.all()) {
+        fmt::print("one step turned, {:32} worst {:.1e}\n", name, *std::max_element(values.begin(), values.end()));
+    }
+    write_series("one_step_turned", errors);
 }
 
 TEST_CASE("One step on a triangulation turned by a right angle comes out turned") {
@@ -118,7 +152,8 @@ TEST_CASE("One step on a triangulation turned by a right angle comes out turned"
     std::map<std::pair<long long, long long>, Index> at;
     for (Index node = 0; node < turned.size(); ++node) at[key(turned.x[node], turned.y[node])] = node;
     std::vector<Index> place;
-    for (Index node = 0; node < plain.size(); ++node) place.push_back(at.at(key(side_m - plain.y[node], plain.x[node])));
+    for (Index node = 0; node < plain.size(); ++node)
+        place.push_back(at.at(key(side_m - plain.y[node], plain.x[node])));
 
     const evolve::River law{.k = 1e-5, .m = 0.5, .n = 1.5, .talus_slope = 0.5};
     const evolve::Setting here = support::island(plain, 1e-3), there = support::island(turned, 1e-3);
@@ -135,47 +170,82 @@ TEST_CASE("One step on a triangulation turned by a right angle comes out turned"
     CHECK(worst < 1e-9);  // coordinates are rounded anew when they are turned
 }
 
-TEST_CASE("Whole runs from turned and mirrored starts differ by no more than runs from other seeds do") {
+TEST_CASE(
+    "Whole runs from turned and mirrored starts differ by no more than runs from other seeds, whatever the outlets") {
     const Grid grid = plane_grid(across, across, 250, 250);
-    const evolve::River law{.k = 2e-6, .m = 0.5, .n = 1};
-    std::vector<double> mean_m, highest_m, integral, mean_turned, highest_turned, integral_turned;
-    for (std::uint64_t seed = 0; seed < 8; ++seed) {
-        const auto start = support::rough_start(support::island(grid, 1e-3), 1, seed);
-        const Shape plain = run_to_rest(grid, law, start);
-        const Shape turned =
-            run_to_rest(grid, law, {.elevation_m = moved_values(start.elevation_m, 1 + static_cast<int>(seed % 7))});
-        mean_m.push_back(plain.mean_m);
-        highest_m.push_back(plain.highest_m);
-        integral.push_back(plain.integral);
-        mean_turned.push_back(turned.mean_m);
-        highest_turned.push_back(turned.highest_m);
-        integral_turned.push_back(turned.integral);
+    Categories differences;
+    for (const auto& [name, boundary] : boundaries(grid)) {
+        if (name == "open rim") continue;  // where water leaves at an open rim nothing digs: it rises for ever
+        Ensemble plain, turned;
+        for (std::uint64_t seed = 0; seed < 8; ++seed) {
+            const int symmetry = 1 + static_cast<int>(seed % 7);
+            evolve::Setting setting = support::island(grid, 1e-3);
+            setting.boundary = boundary;
+            const auto start = support::rough_start(setting, 1, seed);
+            plain.add(run_to_rest(grid, setting, start));
+            setting.boundary = moved_values(boundary, symmetry);
+            turned.add(run_to_rest(grid, setting, {.elevation_m = moved_values(start.elevation_m, symmetry)}));
+        }
+        const auto check = [&](const char* what, const std::vector<double>& a, const std::vector<double>& b) {
+            const double off = std::abs(mean(a) - mean(b)) / standard_deviation(a);
+            fmt::print("turned runs, {:16} {:9}: {:.6g} and {:.6g}, {:.1e} of the scatter\n", name, what, mean(a),
+                       mean(b), off);
+            CHECK(off < 1);
+            differences.add(name, off);
+        };
+        check("mean", plain.mean_m, turned.mean_m);
+        check("highest", plain.highest_m, turned.highest_m);
+        check("integral", plain.integral, turned.integral);
     }
-    const auto within = [](const std::vector<double>& a, const std::vector<double>& b) {
-        return std::abs(mean(a) - mean(b)) <= standard_deviation(a);
-    };
-    fmt::print("turned ensembles: mean {:.2f} and {:.2f} m, highest {:.2f} and {:.2f} m\n", mean(mean_m),
-               mean(mean_turned), mean(highest_m), mean(highest_turned));
-    CHECK(within(mean_m, mean_turned));
-    CHECK(within(highest_m, highest_turned));
-    CHECK(within(integral, integral_turned));
+    write_series("turned_runs", differences);
 }
 
-TEST_CASE("A whole run in kilometres and thousands of years is the same landscape") {
-    const Grid metres = plane_grid(across, across, 250, 250), kilometres = plane_grid(across, across, 0.25, 0.25);
-    const evolve::River law{.k = 2e-6, .m = 0.4, .n = 1.3};
-    evolve::River scaled = law;  // k' = k·(10⁶)^m·10³/10³: areas in km², m/yr is km/kyr
-    scaled.k *= std::pow(1e6, law.m);
+namespace {
+
+Grid in_kilometres(const Grid& grid) { return plane_grid(grid.rows, grid.cols, 0.25, 0.25); }
+
+Mesh in_kilometres(Mesh mesh) {
+    for (auto* lengths : {&mesh.x, &mesh.y, &mesh.length_list}) {
+        for (double& length : *lengths) length /= 1e3;
+    }
+    for (double& area : mesh.cell_area) area /= 1e6;
+    return mesh;
+}
+
+/// Largest difference between a run in m and yr and one in km and kyr, over the relief.
+template <class Topology>
+double worst_of_units(const Topology& metres, const evolve::Model& model) {
+    const Topology kilometres = in_kilometres(metres);
     const evolve::Setting setting = support::island(metres, 1e-3);
+    evolve::Model scaled = model;  // m/yr is km/kyr; areas are in km², so k' = k·(10⁶)^m and D' = D·10³/10⁶
+    scaled.river.k *= std::pow(1e6, model.river.m);
+    scaled.hillslope.diffusivity_m2_per_yr *= 1e-3;
     evolve::Landscape a = support::rough_start(setting, 1, 2), b = a;
     for (double& height : b.elevation_m) height /= 1000;
-    evolve::simulate(metres, {law}, setting, {.step_yr = 5e4, .max_steps = 30, .convergence = 0}, a);
-    evolve::simulate(kilometres, {scaled}, setting, {.step_yr = 50, .max_steps = 30, .convergence = 0}, b);
+    evolve::simulate(metres, model, setting, {.step_yr = 5e4, .max_steps = 30, .convergence = 0}, a);
+    evolve::simulate(kilometres, scaled, setting, {.step_yr = 50, .max_steps = 30, .convergence = 0}, b);
     double worst = 0, highest = 0;
     for (Index node = 0; node < metres.size(); ++node) {
         worst = std::max(worst, std::abs(a.elevation_m[node] - 1000 * b.elevation_m[node]));
         highest = std::max(highest, a.elevation_m[node]);
     }
-    fmt::print("km and kyr: worst {:.1e} m of {:.0f} m\n", worst, highest);
-    CHECK(worst < 1e-9 * highest);
+    return worst / highest;
+}
+
+}  // namespace
+
+TEST_CASE("A whole run in kilometres and thousands of years is the same landscape, whatever the processes") {
+    const Grid grid = plane_grid(across, across, 250, 250);
+    const Mesh mesh = island_mesh(1600, 6);
+    Categories errors;
+    for (const auto& [process, model] : models(1.3, 0.04)) {
+        errors.add("TIN, " + process, worst_of_units(mesh, model));
+        // Slopes at one limit are alike on a raster's faces: which of them a node follows is then left to rounding.
+        if (process != "talus") errors.add("raster, " + process, worst_of_units(grid, model));
+    }
+    for (const auto& [name, worst] : errors.all()) {
+        fmt::print("km and kyr, {:20}: worst {:.1e} of the relief\n", name, worst.front());
+        CHECK(worst.front() < 1e-9);
+    }
+    write_series("kilometres", errors);
 }

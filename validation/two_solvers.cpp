@@ -65,9 +65,9 @@ void compare(const char* name, double n, MakeTopology make) {
     check("theta", stepped.theta, direct.theta, 1e-6);  // both are on the law: their scatter is rounding
     check("ks", stepped.ks, direct.ks, 1e-5 * mean(direct.ks));
     write_series(fmt::format("two_solvers_{}_{:.1f}", name, n), {{"relief_stepping_m", stepped.relief_m},
-                                                                {"relief_steady_m", direct.relief_m},
-                                                                {"integral_stepping", stepped.integral},
-                                                                {"integral_steady", direct.integral}});
+                                                                 {"relief_steady_m", direct.relief_m},
+                                                                 {"integral_stepping", stepped.integral},
+                                                                 {"integral_steady", direct.integral}});
 }
 
 }  // namespace
