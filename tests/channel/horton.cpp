@@ -55,6 +55,23 @@ TEST_CASE("A network built by Horton's laws gives back its ratios exactly") {
     check(ratios.length, 2.1);
     check(ratios.area, 4.5);
     check(ratios.slope, 1.7);
+    CHECK(ratios.bifurcation.regression_se == Approx(0).margin(1e-9));
+}
+
+TEST_CASE("The errors of a Horton ratio are those of the line through its three orders") {
+    // Lengths 100, 200·1.1, 400: logarithms off the line by d, −2d and d, d = −ln 1.1/3.
+    std::vector<OrderStatistics> orders;
+    for (const auto& [order, length] : {std::pair{1u, 100.0}, {2u, 220.0}, {3u, 400.0}}) {
+        orders.push_back({order, 1, length, 1, 1, 1});
+    }
+    const HortonRatio ratio = horton_ratios(orders).length;
+    const double squares = 6 * std::pow(std::log(1.1) / 3, 2), error = std::sqrt(squares / 2);  // Σ(x − x̄)² = 2
+    CHECK(ratio.regression == Approx(2));
+    CHECK(ratio.regression_se == Approx(2 * error));
+    CHECK(ratio.regression_ci95[0] == Approx(2 * std::exp(-12.706 * error)).epsilon(1e-4));  // t with one degree
+    CHECK(ratio.regression_ci95[1] == Approx(2 * std::exp(12.706 * error)).epsilon(1e-4));
+    orders.pop_back();
+    CHECK(std::isnan(horton_ratios(orders).length.regression_se));
 }
 
 TEST_CASE("A stream runs through the side tributaries of lower order that it takes in") {

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <numbers>
 #include <nlohmann/json.hpp>
 
 #include "support/drawing.hpp"
@@ -112,6 +113,27 @@ TEST_CASE("A drawn terrain has the numbers that one counts on it") {
     CHECK(valley["complete"] == true);
     CHECK(valley["outlet_x"] == 500045.0);
     CHECK(valley["outlet_y"] == 3999925.0);
+    CHECK(valley["length_m"].get<double>() == Approx(std::hypot(60, 20)));
+    // Lines through the centres cross the border of 5 by 7 cells 14, 10 and twice 22 times.
+    const double crossed_m = std::numbers::pi / 8 * 10 * (14 + 10 + 44 / std::sqrt(2.0));
+    CHECK(valley["perimeter_m"].get<double>() == Approx(crossed_m));
+    CHECK(valley["circularity"].get<double>() == Approx(4 * std::numbers::pi * 3500 / crossed_m / crossed_m));
+    CHECK(valley["form_factor"].get<double>() == Approx(3500.0 / 4000));
+    CHECK(valley["elongation"].get<double>() == Approx(2 * std::sqrt(3500 / std::numbers::pi) / std::hypot(60, 20)));
+    CHECK(valley["relief_ratio"].get<double>() == Approx(25.5 / std::hypot(60, 20)));
+    CHECK(valley["ruggedness"].get<double>() == Approx(25.5 / std::sqrt(3500)));
+    // 200 m2 from each side meet the middle in each of seven rows. Of the uppermost pair, which are alike, the trunk
+    // goes on into the eastern one, left of a river that runs south; so seven come from the right, six from the left.
+    CHECK(valley["asymmetry_percent"].get<double>() == Approx(100 * 7.0 / 13));
+    CHECK(valley["elevation_min_m"] == -0.5);
+    CHECK(valley["elevation_max_m"] == 25.0);
+    CHECK(valley["elevation_mean_m"].get<double>() == Approx(492.5 / 35));
+    CHECK(valley["channel_length_m"].get<double>() == Approx(200));
+    CHECK(valley["drainage_density_per_m"].get<double>() == Approx(200.0 / 3500));
+    CHECK(valley["sources"] == 14);
+    CHECK(valley["max_shreve"] == 14);
+    CHECK(rim["channel_length_m"].get<double>() == Approx(20));
+    CHECK(rim["sources"] == 2);
     CHECK(rim["area_m2"] == 500.0);
     CHECK(rim["relief_m"] == 20.0);
     CHECK(rim["hypsometric_integral"].get<double>() == Approx(0.6));
@@ -270,7 +292,7 @@ TEST_CASE("A basin's hypsometric integral and the areas weigh every cell by its 
     CHECK(m.statistics.basins[0].basin.area_m2 == Approx(area).epsilon(1e-12));
     CHECK(m.statistics.basins[0].relief_m == 12);
     const double integral = (34 * a[0] + 20 * a[1] + 11 * a[2] + 2 * a[3]) / area / 12;
-    CHECK(m.statistics.basins[0].hypsometric_integral == Approx(integral).epsilon(1e-12));
+    CHECK(m.statistics.basins[0].hypsometry.integral == Approx(integral).epsilon(1e-12));
     CHECK(m.statistics.hypsometry.integral == Approx(integral).epsilon(1e-12));
     CHECK(m.statistics.channels.share_used == 1);
 }

@@ -116,13 +116,23 @@ TEST_CASE("A mouth where two rivers meet counts both in its order and its magnit
 
 TEST_CASE("The table of basins holds every basin with its outline and its own numbers") {
     Statistics s{};
+    terrain::Hypsometry low{}, high{};
+    low.integral = 0.25;
+    low.density_kurtosis = 1.7;
+    low.relative_height = high.relative_height = {0, 1};
+    low.relative_area = {1, 0.1};
+    high.integral = 0.75;
+    high.density_kurtosis = 1.9;
+    high.relative_area = {1, 0.3};
     s.basins = {{.basin = {.outlet = 3, .area_m2 = 900, .complete = true},
                  .relief_m = 40,
-                 .hypsometric_integral = 0.25,
+                 .hypsometry = low,
+                 .length_m = 45,
                  .max_strahler = 4},
                 {.basin = {.outlet = 8, .area_m2 = 500, .complete = false},
                  .relief_m = 70,
-                 .hypsometric_integral = 0.75,
+                 .hypsometry = high,
+                 .length_m = 32,
                  .max_strahler = 2}};
     const Polygon first{{0, 0}, {1, 0}, {1, 1}}, second{{5, 5}, {6, 5}, {6, 6}, {5, 6}};
     const Table basins = basins_table(s, drawn_position, {MultiPolygon{{first, {}}}, MultiPolygon{{second, {}}}});
@@ -135,7 +145,48 @@ TEST_CASE("The table of basins holds every basin with its outline and its own nu
     CHECK(column<Doubles>(basins, "relief_m") == Doubles{40, 70});
     CHECK(column<Doubles>(basins, "hypsometric_integral") == Doubles{0.25, 0.75});
     CHECK(column<Wholes>(basins, "max_strahler") == Wholes{4, 2});
+    CHECK(column<Doubles>(basins, "density_kurtosis") == Doubles{1.7, 1.9});
+    CHECK(column<Doubles>(basins, "length_m") == Doubles{45, 32});
     CHECK(basins.polygons.at(1).at(0).outer.size() == 4);
+    CHECK(basin_values(s, drawn_position).columns.size() == basins.columns.size());
+    const Table curves = basin_hypsometry_table(s);
+    CHECK(column<Wholes>(curves, "basin") == Wholes{0, 0, 1, 1});
+    CHECK(column<Doubles>(curves, "relative_height") == Doubles{0, 1, 0, 1});
+    CHECK(column<Doubles>(curves, "relative_area") == Doubles{1, 0.1, 1, 0.3});
+}
+
+TEST_CASE("Points become rows with their coordinates") {
+    const Table junctions = with_coordinates(junctions_table(drawn_statistics(), drawn_position));
+    CHECK(junctions.kind == GeometryKind::no_geometry);
+    CHECK(row_count(junctions) == 6);
+    CHECK(column<Doubles>(junctions, "x").at(5) == 106);
+    CHECK(column<Doubles>(junctions, "y").at(5) == 188);
+}
+
+TEST_CASE("Orders, Horton's ratios, side tributaries and widths each have a tidy table") {
+    const Statistics s = drawn_statistics();
+    const Table orders = strahler_table(channel::strahler_statistics(s.network));
+    CHECK(column<Wholes>(orders, "order") == Wholes{1, 2});
+    CHECK(column<Wholes>(orders, "streams") == Wholes{3, 1});
+    CHECK(column<Doubles>(orders, "mean_length_m") == Doubles{20.0 / 3, 10});
+    const Table horton = horton_table({.bifurcation = {3, 4, 0.5, {2, 5}}, .length = {}, .area = {}, .slope = {}});
+    CHECK(column<Texts>(horton, "ratio") == Texts{"RB", "RL", "RA", "RS"});
+    CHECK(column<Doubles>(horton, "regression").front() == 3);
+    CHECK(column<Doubles>(horton, "mean_ratio").front() == 4);
+    CHECK(column<Doubles>(horton, "regression_se").front() == 0.5);
+    CHECK(column<Doubles>(horton, "regression_low95").front() == 2);
+    CHECK(column<Doubles>(horton, "regression_high95").front() == 5);
+    channel::Tokunaga t{};
+    t.per_stream = {{1, 3}, {2}};
+    t.pooled = {1.5, 3};
+    const Table tokunaga = tokunaga_table(t);
+    CHECK(column<Wholes>(tokunaga, "order") == Wholes{1, 1, 2});
+    CHECK(column<Wholes>(tokunaga, "k") == Wholes{1, 2, 1});
+    CHECK(column<Doubles>(tokunaga, "T") == Doubles{1, 3, 2});
+    CHECK(column<Doubles>(tokunaga, "T_k") == Doubles{1.5, 3, 1.5});
+    const Table width = width_function_table({.distance_m = {5, 15}, .links = {1, 2}});
+    CHECK(column<Doubles>(width, "distance_m") == Doubles{5, 15});
+    CHECK(column<Doubles>(width, "links") == Doubles{1, 2});
 }
 
 TEST_CASE("The curves are written with every number in its own column") {

@@ -2,6 +2,8 @@
 #include "thalweg/terrain/basins.hpp"
 
 #include <catch2/catch.hpp>
+#include <cmath>
+#include <numbers>
 
 #include "support/drawing.hpp"
 #include "support/terrain_oracles.hpp"
@@ -218,4 +220,73 @@ TEST_CASE("complete basins never overlap and hold exactly the complete nodes") {
             for (Index b = 0; b < found.size(); ++b) REQUIRE(labelled[b] == Approx(found[b].area_m2));
         }
     }
+}
+
+TEST_CASE("the nodes of each basin are listed in their order") {
+    const BasinNodes rows = nodes_of_basins(std::vector<Index>{1, 0, none, 1, 3, 1}, 4);
+    CHECK(rows.offset == std::vector<Index>{0, 1, 4, 4, 5});
+    CHECK(rows.node == std::vector<Index>{1, 0, 3, 5, 4});
+}
+
+namespace {
+
+/// Label 0 within an ellipse that is a circle on the ground, about the middle of n by n cells of dx by dy metres.
+double perimeter_of_circle(Index n, double radius_m, double dx_m, double dy_m) {
+    const Grid grid = plane_grid(n, n, dx_m, dy_m);
+    std::vector<Index> label;
+    for (Index node = 0; node < grid.size(); ++node) {
+        const double x = (grid.col(node) + 0.5 - 0.5 * n) * dx_m, y = (grid.row(node) + 0.5 - 0.5 * n) * dy_m;
+        label.push_back(std::hypot(x, y) <= radius_m ? 0 : none);
+    }
+    return basin_perimeters(grid, label, 1).at(0);
+}
+
+/// Length of the divide of a half plane whose border runs at `angle` through the middle of a disc of cells, over the
+/// disc's diameter.
+double slanting_border(double angle) {
+    const Index n = 401;
+    const Grid grid = plane_grid(n, n, 1, 1);
+    std::vector<Index> label;
+    for (Index node = 0; node < grid.size(); ++node) {
+        const double x = grid.col(node) - 200.0, y = grid.row(node) - 200.0;
+        const bool above = y * std::cos(angle) - x * std::sin(angle) > 0.3;
+        label.push_back(std::hypot(x, y) > 180 ? none : above ? 0 : 1);
+    }
+    // Each half has the border and half of the rim, which is as long by this count as the whole disc's less the border.
+    std::vector<Index> whole = label;
+    for (Index& basin : whole) basin = basin == none ? none : 0;
+    const auto halves = basin_perimeters(grid, label, 2);
+    return (halves[0] + halves[1] - basin_perimeters(grid, whole, 1)[0]) / 2 / 360;
+}
+
+}  // namespace
+
+TEST_CASE("a circle's perimeter is right to discretisation, on oblong cells too") {
+    const double exact = 2 * std::numbers::pi * 1000;
+    CHECK(perimeter_of_circle(120, 1000, 20, 20) == Approx(exact).epsilon(0.02));
+    CHECK(perimeter_of_circle(480, 1000, 5, 5) == Approx(exact).epsilon(0.004));
+    CHECK(perimeter_of_circle(480, 1000, 5, 8) == Approx(exact).epsilon(0.01));
+    CHECK(perimeter_of_circle(480, 1000, 8, 5) == Approx(exact).epsilon(0.01));
+}
+
+TEST_CASE("straight borders are right on average over their directions, and off by what the header says") {
+    CHECK(slanting_border(0) == Approx(0.948).margin(0.004));
+    CHECK(slanting_border(std::numbers::pi / 8) == Approx(1.026).margin(0.006));
+    double sum = 0;
+    constexpr int angles = 64;
+    for (int i = 0; i < angles; ++i) sum += slanting_border(std::numbers::pi * i / angles);
+    CHECK(sum / angles == Approx(1).margin(0.005));
+}
+
+TEST_CASE("a basin at the edge of the grid has a divide there, and a row of another width its own") {
+    const std::vector<Index> all(12, 0);
+    const double inside = basin_perimeters(plane_grid(3, 4, 10, 10), all, 1)[0];
+    std::vector<Index> framed(30, none);
+    for (Index r = 0; r < 3; ++r) {
+        for (Index c = 0; c < 4; ++c) framed[(r + 1) * 6 + c + 1] = 0;
+    }
+    CHECK(basin_perimeters(plane_grid(5, 6, 10, 10), framed, 1)[0] == Approx(inside).epsilon(1e-14));
+    Grid wide = plane_grid(3, 4, 10, 10);
+    for (double& width : wide.east_west) width = 20;
+    CHECK(basin_perimeters(wide, all, 1)[0] == Approx(basin_perimeters(plane_grid(3, 4, 20, 10), all, 1)[0]));
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/terrain/hypsometry.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -141,4 +142,107 @@ TEST_CASE("a surface without relief, or without data, has no curve") {
     CHECK(std::isnan(hypsometry(std::vector<double>{nodata}, std::vector<double>{1}).minimum_m));
     CHECK_THROWS_AS(hypsometry(std::vector<double>{1, 2}, std::vector<double>{1}), Error);
     CHECK_THROWS_AS(hypsometry(std::vector<double>{1, 2}, std::vector<double>{1, 1}, 1), Error);
+}
+
+TEST_CASE("the density of a plane, a cone and a paraboloid has the moments of its formula") {
+    const Hypsometry plane = of_plane(2001);  // uniform
+    CHECK(plane.density_skewness == Approx(0).margin(1e-3));
+    CHECK(plane.density_kurtosis == Approx(1.8).epsilon(1e-3));
+    const Hypsometry paraboloid = of_revolution(800, 2);
+    CHECK(paraboloid.density_skewness == Approx(0).margin(1e-2));
+    CHECK(paraboloid.density_kurtosis == Approx(1.8).epsilon(1e-2));
+    // A cone has f = 1 − √x, −df/dx = 1/(2√x): ∫x^k·(−df) = 1/(2k + 1).
+    const double m = 1.0 / 3, variance = 1.0 / 5 - m * m;
+    const double third = 1.0 / 7 - 3 * m / 5 + 2 * m * m * m;
+    const double fourth = 1.0 / 9 - 4 * m / 7 + 6 * m * m / 5 - 3 * m * m * m * m;
+    const Hypsometry cone = of_revolution(800, 1);
+    CHECK(cone.density_skewness == Approx(third / std::pow(variance, 1.5)).epsilon(5e-3));
+    CHECK(cone.density_kurtosis == Approx(fourth / (variance * variance)).epsilon(5e-3));
+}
+
+namespace {
+
+/// Moments and curve by sorting all cells, however many there are: μ_k = ∫ a(h)^(k+1)/(k+1) dh over the relative
+/// height, a(h) the area at or above it, which is ∫ x^k·f dx with the order of integration changed.
+Hypsometry by_sorting(const std::vector<double>& z, const std::vector<double>& area) {
+    std::vector<std::size_t> order(z.size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return z[a] > z[b]; });
+    double total = 0;
+    for (const double a : area) total += a;
+    const double relief = z[order.front()] - z[order.back()];
+    double raw[5] = {0, 0, 0, 0, 0}, above = 0;
+    for (std::size_t i = 0; i + 1 < order.size(); ++i) {
+        above += area[order[i]] / total;
+        const double drop = (z[order[i]] - z[order[i + 1]]) / relief;
+        for (int k = 0; k < 5; ++k) raw[k] += drop * std::pow(above, k + 1) / (k + 1);
+    }
+    Hypsometry h{};
+    h.integral = raw[0];
+    const double m = raw[1] / raw[0], variance = raw[2] / raw[0] - m * m;
+    h.skewness = (raw[3] / raw[0] - 3 * m * raw[2] / raw[0] + 2 * m * m * m) / std::pow(variance, 1.5);
+    h.kurtosis = (raw[4] / raw[0] - 4 * m * raw[3] / raw[0] + 6 * m * m * raw[2] / raw[0] - 3 * m * m * m * m) /
+                 (variance * variance);
+    return h;
+}
+
+}  // namespace
+
+TEST_CASE("many cells in slices of the relief give what sorting each of them gives") {
+    const Grid grid = uneven_grid(100, 900);
+    const std::vector<double> areas = cell_areas(grid);
+    for (const double step : {0.0, 0.01}) {
+        std::vector<double> z = noise_terrain(100, 900, 5).elevation_m;
+        for (double& height : z) {
+            height = 700 + 300 * height * height;
+            if (step > 0) height = step * std::round(height / step);
+        }
+        const Hypsometry expected = by_sorting(z, areas), h = hypsometry(z, areas);
+        CHECK(h.integral == Approx(expected.integral).epsilon(1e-12));
+        CHECK(h.integral_by_curve == Approx(expected.integral).epsilon(1e-9));
+        CHECK(h.skewness == Approx(expected.skewness).margin(1e-8));
+        CHECK(h.kurtosis == Approx(expected.kurtosis).margin(1e-8));
+        double total = 0;
+        for (const double area : areas) total += area;
+        for (std::size_t i = 0; i < h.relative_height.size(); i += 10) {
+            double above = 0;
+            for (std::size_t cell = 0; cell < z.size(); ++cell) {
+                const double relative = (z[cell] - h.minimum_m) / (h.maximum_m - h.minimum_m);
+                if (relative >= h.relative_height[i]) above += areas[cell];
+            }
+            CHECK(h.relative_area[i] == Approx(above / total).epsilon(1e-12));
+        }
+    }
+}
+
+TEST_CASE("whole heights of many cells keep an exact curve") {
+    const TestTerrain terrain = stepped_terrain(300, 300, 101, 3);
+    const std::vector<double> areas = cell_areas(terrain.grid);
+    const Hypsometry h = hypsometry(terrain.elevation_m, areas);
+    for (std::size_t i = 0; i < 101; ++i) {
+        const auto above = std::ranges::count_if(terrain.elevation_m, [&](double z) { return z >= 1.0 * i; });
+        CHECK(h.relative_area[i] == Approx(above / 90000.0).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("the hypsometry of each basin is that of its own cells") {
+    const TestTerrain terrain = with_holes(noise_terrain(20, 30, 2), 0.1, 2);
+    const std::vector<double> areas = cell_areas(uneven_grid(20, 30));
+    const std::vector<Index> offset{0, 250, 250, 600};
+    std::vector<Index> nodes;
+    for (Index node = 0; node < 600; ++node) nodes.push_back((node * 7) % 600);
+    const auto all = hypsometries(terrain.elevation_m, areas, offset, nodes, 11);
+    REQUIRE(all.size() == 3);
+    for (const std::size_t basin : {0u, 2u}) {
+        std::vector<double> z, a;
+        for (Index i = offset[basin]; i < offset[basin + 1]; ++i) {
+            z.push_back(terrain.elevation_m[nodes[i]]);
+            a.push_back(areas[nodes[i]]);
+        }
+        const Hypsometry expected = hypsometry(z, a, 11);
+        CHECK(all[basin].integral == expected.integral);
+        CHECK(all[basin].density_skewness == expected.density_skewness);
+        CHECK(all[basin].relative_area == expected.relative_area);
+    }
+    CHECK(std::isnan(all[1].minimum_m));
 }

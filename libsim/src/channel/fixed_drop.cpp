@@ -52,6 +52,7 @@ void cut_reach(const Profile& profile, std::span<const Index> reach, const Segme
     if (!(total > 0) || total < options.smallest_drop_m) return;
     const double enough = options.drop_m * (1 - 1e-9);  // a piece is not missed by rounding
     double fallen = 0, start = 0, length = 0, log_area = 0;
+    Index lowest = reach.front();
     for (std::size_t i = 0; i < reach.size(); ++i) {
         const double step = profile.graph.length[reach[i]];
         fallen += profile.drop(reach[i]);
@@ -59,7 +60,8 @@ void cut_reach(const Profile& profile, std::span<const Index> reach, const Segme
         log_area += step * std::log(profile.area[reach[i]]);
         const bool last = i + 1 == reach.size();
         if (!last && (fallen - start < enough || total - fallen < enough)) continue;
-        points.push_back({std::exp(log_area / length), (fallen - start) / length, length});
+        points.push_back({std::exp(log_area / length), (fallen - start) / length, length, lowest});
+        if (!last) lowest = reach[i + 1];
         start = fallen;
         length = log_area = 0;
     }

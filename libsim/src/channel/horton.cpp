@@ -25,7 +25,12 @@ HortonRatio growth(const std::vector<OrderStatistics>& orders, double (*statisti
         if (value > 0 && previous > 0) ratio.push_back(value / previous);
         previous = value;
     }
-    return {.regression = std::pow(10, fit_line(order, logarithm).slope.value), .mean_ratio = mean(ratio)};
+    const Estimate slope = fit_line(order, logarithm).slope;
+    const double regression = std::pow(10, slope.value);
+    return {.regression = regression,
+            .mean_ratio = mean(ratio),
+            .regression_se = regression * std::log(10.0) * slope.standard_error,
+            .regression_ci95 = {std::pow(10, slope.interval95[0]), std::pow(10, slope.interval95[1])}};
 }
 
 }  // namespace

@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
+#include "channel/directions.hpp"
 #include "thalweg/channel/laws.hpp"
 #include "thalweg/core/statistics.hpp"
 
@@ -58,12 +58,6 @@ Point downstream_direction(std::span<const Index> nodes, const OffsetOf& offset,
         ++at;
     }
     return offset(nodes.front(), nodes[at]);
-}
-
-/// Counterclockwise from one direction to another, in [0, 2π).
-double turn(const Point& from, const Point& to) {
-    const double angle = std::atan2(from.x * to.y - from.y * to.x, from.x * to.x + from.y * to.y);
-    return angle < 0 ? angle + 2 * std::numbers::pi : angle;
 }
 
 double angle_between(const Point& a, const Point& b) {

@@ -49,7 +49,7 @@ std::vector<SlopeAreaPoint> node_slopes(const terrain::FlowGraph& graph, std::sp
         const Index receiver = graph.receiver[node];
         if (receiver == none || (!used.empty() && !used[node])) continue;
         const double slope = (elevation_m[node] - elevation_m[receiver]) / graph.length[node];
-        if (slope > 0 && drainage_area_m2[node] > 0) points.push_back({drainage_area_m2[node], slope});
+        if (slope > 0 && drainage_area_m2[node] > 0) points.push_back({drainage_area_m2[node], slope, 1, node});
     }
     return points;
 }

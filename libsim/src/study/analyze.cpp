@@ -119,10 +119,7 @@ void write_tables(const Raster& dem, const Statistics& s, const std::filesystem:
     auto outlines = io::cell_outlines(dem, s.basin_of, static_cast<Index>(s.basins.size()));
     io::write_geopackage(folder / "network.gpkg", network_layers(s, position, std::move(outlines)),
                          dem.placement.crs_wkt);
-    io::write_csv(folder / "hypsometry.csv", hypsometry_table(s.hypsometry));
-    io::write_csv(folder / "chi.csv", chi_table(s, position));
-    io::write_csv(folder / "links.csv", link_values(s));
-    io::write_csv(folder / "slope_area.csv", slope_area_table(s.slope_area.bins));
+    write_statistics(s, position, folder);
     io::write_csv(folder / "slope_area_points.csv", slope_area_points_table(s.slope_area_points));
 }
 

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <utility>
 
+#include "study/basin_statistics.hpp"
 #include "study/channel_choice.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/terrain/accumulate.hpp"
@@ -78,10 +79,10 @@ ChannelStatistics channel_statistics(const Statistics& s, double threshold_m2, d
 }
 
 /// From the channel threshold to a tenth of the largest basin; what is larger knows the basin's own size.
-PowerLawFit exceedance_in_largest_basin(const RoutedTerrain& terrain, const Statistics& s, double threshold_m2) {
+PowerLawFit exceedance_in_largest_basin(const RoutedTerrain& terrain, const Statistics& s, double threshold_m2,
+                                        double largest_m2) {
     std::vector<std::uint8_t> inside(s.basin_of.size());
     for (std::size_t node = 0; node < inside.size(); ++node) inside[node] = s.basin_of[node] == 0;
-    const double largest_m2 = s.basins.empty() ? 0 : s.basins.front().basin.area_m2;
     return channel::area_exceedance(terrain.drainage_area_m2, inside, threshold_m2, 0.1 * largest_m2);
 }
 
@@ -96,7 +97,8 @@ std::array<double, 3> source_areas(const RoutedTerrain& terrain, std::span<const
     return {least, quantile(std::move(areas), 0.5), most};
 }
 
-NetworkStatistics network_statistics(const RoutedTerrain& terrain, const Statistics& s, double threshold_m2) {
+NetworkStatistics network_statistics(const RoutedTerrain& terrain, const Statistics& s, double threshold_m2,
+                                     double largest_m2) {
     const auto longest = channel::longest_upstream_lengths(terrain.graph);
     NetworkStatistics n{.tokunaga = channel::tokunaga(s.network),
                         .hack = channel::hack_law(s.network, terrain.drainage_area_m2, longest),
@@ -108,7 +110,7 @@ NetworkStatistics network_statistics(const RoutedTerrain& terrain, const Statist
                         .main_streams = channel::main_streams(s.network),
                         .pfafstetter = channel::pfafstetter_codes(s.network),
                         .width = channel::width_function(s.network),
-                        .area_exceedance = exceedance_in_largest_basin(terrain, s, threshold_m2)};
+                        .area_exceedance = exceedance_in_largest_basin(terrain, s, threshold_m2, largest_m2)};
     const channel::OffsetOf unknown = [](Index, Index) {
         return Point{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
     };
@@ -116,34 +118,6 @@ NetworkStatistics network_statistics(const RoutedTerrain& terrain, const Statist
     n.junctions = channel::junction_angles(s.network, offset, n.junction_reach_m, n.flint.exponent.value);
     if (terrain.offset_m) n.cis_trans = channel::cis_trans_links(s.network, offset, n.junction_reach_m);
     return n;
-}
-
-/// Relief, hypsometric integral and order of every basin in one pass over the nodes.
-std::vector<BasinStatistics> basin_statistics(const RoutedTerrain& terrain, std::span<const double> ground_m,
-                                              const std::vector<terrain::Basin>& basins, const Statistics& s) {
-    struct Sums {
-        double lowest = std::numeric_limits<double>::infinity();
-        double highest = -std::numeric_limits<double>::infinity();
-        double area = 0, volume = 0;
-    };
-    std::vector<Sums> sums(basins.size());
-    for (Index node = 0; node < terrain.graph.size(); ++node) {
-        if (s.basin_of[node] == none) continue;
-        Sums& sum = sums[s.basin_of[node]];
-        sum.lowest = std::min(sum.lowest, ground_m[node]);
-        sum.highest = std::max(sum.highest, ground_m[node]);
-        sum.area += terrain.cell_area_m2[node];
-        sum.volume += terrain.cell_area_m2[node] * ground_m[node];
-    }
-    std::vector<BasinStatistics> result;
-    for (std::size_t b = 0; b < basins.size(); ++b) {
-        const double relief = sums[b].highest - sums[b].lowest;
-        const double mean_height = sums[b].volume / sums[b].area - sums[b].lowest;
-        const double integral = relief > 0 ? mean_height / relief : std::numeric_limits<double>::quiet_NaN();
-        result.push_back({basins[b], relief, integral, 0});
-    }
-    for (std::size_t b = 0; b < basins.size(); ++b) result[b].max_strahler = s.strahler_of[basins[b].outlet];
-    return result;
 }
 
 /// Relief of the largest basin of the statistics, or of everything where there is none: what 2.5 % are taken of.
@@ -251,8 +225,8 @@ double default_channel_area(double area_m2) {
 }
 
 Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_m, const MeasureOptions& options,
-                   std::vector<channel::SlopeAreaPoint> slopes) {
-    const double threshold = options.channel_area_m2.value_or(default_channel_area(total_area(terrain)));
+                   std::vector<channel::SlopeAreaPoint> slopes, ChiStatistics chi) {
+    const double threshold = channel_threshold(terrain, options);
 
     Statistics s;
     s.hypsometry = terrain::hypsometry(ground_m, terrain.cell_area_m2);
@@ -264,7 +238,6 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
 
     const auto basins = basins_in_use(terrain, options, threshold, all_channels);
     s.basin_of = terrain::basin_labels(terrain.graph, basins);
-    s.basins = basin_statistics(terrain, ground_m, basins, s);
     const double basin_area =
         std::accumulate(basins.begin(), basins.end(), 0.0, [](double sum, const auto& b) { return sum + b.area_m2; });
 
@@ -277,10 +250,17 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
                                            : std::numeric_limits<double>::quiet_NaN();
     s.strahler = channel::strahler_statistics(s.network);
     s.horton = channel::horton_ratios(s.strahler);
-    s.network_laws = network_statistics(terrain, s, options.heads ? s.channels.source_area_m2[0] : threshold);
+    s.network_laws = network_statistics(terrain, s, options.heads ? s.channels.source_area_m2[0] : threshold,
+                                        basins.empty() ? 0 : basins.front().area_m2);
     s.slope_area = channel::fit_slope_area(channel::slope_area_bins(slopes));
     s.slope_area_points = std::move(slopes);
+    s.chi = std::move(chi);
+    s.basins = basin_statistics(terrain, ground_m, basins, s);
     return s;
+}
+
+double channel_threshold(const RoutedTerrain& terrain, const MeasureOptions& options) {
+    return options.channel_area_m2.value_or(default_channel_area(total_area(terrain)));
 }
 
 ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions& options, double threshold_m2,
@@ -334,8 +314,10 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
     MeasureOptions resolved = with_channels_chosen(m.terrain, options, m.channel_evidence);
     if (!resolved.channel_area_m2) resolved.channel_area_m2 = default_channel_area(m.area_m2);
     auto slopes = segments(carved, m, resolved, *resolved.channel_area_m2, raster.values);
-    m.statistics = measure(m.terrain, raster.values, resolved, std::move(slopes));
-    m.statistics.chi = measure_chi(carved, resolved, *resolved.channel_area_m2, m.segment_drop_m);
+    ChiStatistics chi = measure_chi(carved, resolved, *resolved.channel_area_m2, m.segment_drop_m);
+    m.statistics = measure(m.terrain, raster.values, resolved, std::move(slopes), std::move(chi));
+    const auto basins = static_cast<Index>(m.statistics.basins.size());
+    add_perimeters(terrain::basin_perimeters(raster.grid, m.statistics.basin_of, basins), m.statistics);
     return m;
 }
 

@@ -38,6 +38,8 @@ Json hypsometry_json(const terrain::Hypsometry& h) {
             {"integral_by_curve", number(h.integral_by_curve)},
             {"skewness", number(h.skewness)},
             {"kurtosis", number(h.kurtosis)},
+            {"density_skewness", number(h.density_skewness)},
+            {"density_kurtosis", number(h.density_kurtosis)},
             {"relative_area", numbers(h.relative_area)},
             {"relative_height", numbers(h.relative_height)}};
 }
@@ -79,7 +81,10 @@ Json strahler_json(const std::vector<channel::OrderStatistics>& orders) {
 }
 
 Json ratio_json(const channel::HortonRatio& ratio) {
-    return {{"regression", number(ratio.regression)}, {"mean_ratio", number(ratio.mean_ratio)}};
+    return {{"regression", number(ratio.regression)},
+            {"mean_ratio", number(ratio.mean_ratio)},
+            {"regression_se", number(ratio.regression_se)},
+            {"regression_ci95", interval({ratio.regression, ratio.regression_se, ratio.regression_ci95})}};
 }
 
 Json slope_area_json(const channel::SlopeArea& s) {
@@ -97,20 +102,22 @@ Json slope_area_json(const channel::SlopeArea& s) {
             {"bins", bins}};
 }
 
+Json value_json(double value) { return number(value); }
+Json value_json(std::int64_t value) { return value; }
+Json value_json(const std::string& value) { return value; }
+
+/// The columns of the table of basins, one object per row.
 Json basins_json(const Statistics& s, const PositionOf& position) {
     Json list = Json::array();
-    for (std::size_t b = 0; b < s.basins.size(); ++b) {
-        const BasinStatistics& basin = s.basins[b];
-        const Point outlet = position(basin.basin.outlet);
-        list.push_back({{"id", b},
-                        {"outlet_x", outlet.x},
-                        {"outlet_y", outlet.y},
-                        {"area_m2", basin.basin.area_m2},
-                        {"complete", basin.basin.complete},
-                        {"relief_m", basin.relief_m},
-                        {"hypsometric_integral", number(basin.hypsometric_integral)},
-                        {"max_strahler", basin.max_strahler}});
+    for (std::size_t row = 0; row < s.basins.size(); ++row) list.push_back(Json::object());
+    for (const Column& column : basin_values(s, position).columns) {
+        std::visit(
+            [&](const auto& values) {
+                for (std::size_t row = 0; row < values.size(); ++row) list[row][column.name] = value_json(values[row]);
+            },
+            column.values);
     }
+    for (std::size_t row = 0; row < s.basins.size(); ++row) list[row]["complete"] = s.basins[row].basin.complete;
     return list;
 }
 
@@ -143,11 +150,6 @@ void explain_nulls(const Statistics& s, std::vector<std::string>& notes) {
     }
     if (s.basins.empty()) notes.push_back("horton, strahler: there are no streams");
     if (s.channels.total_length_m == 0) notes.push_back("channels: without links there is no drainage density");
-    for (const BasinStatistics& basin : s.basins) {
-        if (std::isfinite(basin.hypsometric_integral)) continue;
-        notes.push_back("basins: a basin without relief has no hypsometric integral");
-        break;
-    }
     if (s.slope_area.bins.size() < 3) {
         notes.push_back("slope_area: fewer than three bins of drainage area, so no line was fitted");
     }
@@ -196,6 +198,14 @@ Json terrain_json(const TerrainInput& input, const Statistics& s, const Position
     summary["slope_area"] = slope_area_json(s.slope_area);
     summary["chi"] = chi_json(s.chi, notes);
     summary["basins"] = basins_json(s, position);
+    if (!s.basins.empty()) {
+        explain_null("basins", summary["basins"],
+                     "a basin without relief has no hypsometry; a length, a perimeter and what is made of them need a "
+                     "basin of more than one cell (on a mesh the raster drawn of it), the asymmetry a trunk with "
+                     "inflows; theta and ks need three bins of drainage area, their errors four, ksn a river that falls "
+                     "by a segment's drop",
+                     notes);
+    }
     return summary;
 }
 

@@ -184,8 +184,8 @@ Finished finish(const Topology& topology, const evolve::Model& model, const Doma
     f.river_slopes = river_slopes(f);
     MeasureOptions options;
     options.channel_area_m2 = e.study.channel_area_m2;
-    f.statistics = measure(f.terrain, f.terrain.elevation_m, options, f.river_slopes);
-    f.statistics.chi = measure_chi(f.terrain, options, f.statistics.channels.threshold_area_m2, 0);
+    f.statistics = measure(f.terrain, f.terrain.elevation_m, options, f.river_slopes,
+                           measure_chi(f.terrain, options, channel_threshold(f.terrain, options), 0));
     return f;
 }
 
@@ -273,8 +273,10 @@ std::string run(const Topology& topology, const Experiment& e, Domain& domain, d
 
     messages.progress("measuring and writing");
     const Stopwatch writing;
-    const Finished finished = finish(topology, model, domain, e);
+    Finished finished = finish(topology, model, domain, e);
     const Heightfield h = heightfield(topology, domain, finished, e);
+    const auto basins = static_cast<Index>(finished.statistics.basins.size());
+    add_perimeters(terrain::basin_perimeters(h.elevation.grid, h.basin_of, basins), finished.statistics);
     const PositionOf position = map_positions(domain, h.elevation);
     write_results(h, finished, outcome, position, e, folder);
     const Json terrain_files = write_terrain_files(topology, domain, h, finished, e, folder);

@@ -162,10 +162,7 @@ void write_results(const Heightfield& h, const Finished& f, const Outcome& o, co
                          network_layers(s, position, std::move(outlines)),
                          e.placement.crs_wkt);
     io::write_csv(folder / "slope_area_nodes.csv", node_table(f));
-    io::write_csv(folder / "slope_area.csv", slope_area_table(s.slope_area.bins));
-    io::write_csv(folder / "hypsometry.csv", hypsometry_table(s.hypsometry));
-    io::write_csv(folder / "chi.csv", chi_table(s, position));
-    io::write_csv(folder / "links.csv", link_values(s));
+    write_statistics(s, position, folder);
     io::write_csv(folder / "history.csv", history_table(o.history));
 }
 

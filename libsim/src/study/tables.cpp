@@ -3,23 +3,10 @@
 
 #include <map>
 
+#include "study/columns.hpp"
+
 namespace thalweg::study {
 namespace {
-
-using Doubles = std::vector<double>;
-using Wholes = std::vector<std::int64_t>;
-using Texts = std::vector<std::string>;
-
-/// -1 stands for "none", which a GeoPackage reader would take for four thousand million.
-std::int64_t or_minus_one(Index value) { return value == none ? -1 : static_cast<std::int64_t>(value); }
-
-template <class Row, class Get>
-auto column_of(const std::vector<Row>& rows, Get get) {
-    std::vector<decltype(get(rows.front()))> values;
-    values.reserve(rows.size());
-    for (const Row& row : rows) values.push_back(get(row));
-    return values;
-}
 
 /// What meets at the nodes where links begin or end.
 struct Meeting {
@@ -126,24 +113,6 @@ Table knickpoints_table(const Statistics& s, const PositionOf& position) {
 std::vector<Table> network_layers(const Statistics& s, const PositionOf& position, std::vector<MultiPolygon> outlines) {
     return {links_table(s, position), junctions_table(s, position), basins_table(s, position, std::move(outlines)),
             knickpoints_table(s, position)};
-}
-
-Table basins_table(const Statistics& s, const PositionOf& position, std::vector<MultiPolygon> outlines) {
-    Wholes id;
-    for (std::size_t b = 0; b < s.basins.size(); ++b) id.push_back(static_cast<std::int64_t>(b));
-    const auto& rows = s.basins;
-    return {.name = "basins",
-            .columns = {{"id", id},
-                        {"outlet_x", column_of(rows, [&](const auto& r) { return position(r.basin.outlet).x; })},
-                        {"outlet_y", column_of(rows, [&](const auto& r) { return position(r.basin.outlet).y; })},
-                        {"area_m2", column_of(rows, [](const auto& r) { return r.basin.area_m2; })},
-                        {"complete", column_of(rows, [](const auto& r) { return std::int64_t{r.basin.complete}; })},
-                        {"relief_m", column_of(rows, [](const auto& r) { return r.relief_m; })},
-                        {"hypsometric_integral", column_of(rows, [](const auto& r) { return r.hypsometric_integral; })},
-                        {"max_strahler", column_of(rows, [](const auto& r) { return std::int64_t{r.max_strahler}; })}},
-            .kind = GeometryKind::polygon,
-            .geometry = {},
-            .polygons = std::move(outlines)};
 }
 
 Table hypsometry_table(const terrain::Hypsometry& h) {

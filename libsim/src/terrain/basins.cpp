@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
 #include <ranges>
 #include <tuple>
 
@@ -25,6 +28,22 @@ bool is_one_catchment(const FlowGraph& graph, std::span<const Index> outlet) {
 Index cells_apart(const Grid& grid, Index a, Index b) {
     const auto apart = [](Index p, Index q) { return p > q ? p - q : q - p; };
     return std::max(apart(grid.row(a), grid.row(b)), apart(grid.col(a), grid.col(b)));
+}
+
+/// From the middle of a row of cells to the next one south (of the last row: to the one before).
+double row_height(const Grid& grid, Index row) {
+    if (grid.north_south.empty()) return grid.cell_area[row] / grid.east_west[row];
+    return grid.north_south[std::min<std::size_t>(row, grid.north_south.size() - 1)];
+}
+
+/// What a crossing of each of the four ways to a neighbour (slots 0 to 3) counts in a length: half the distance of
+/// parallel lines, times the angle between the middles to the next directions.
+std::array<double, 4> crossing_lengths(double east_west_m, double north_south_m) {
+    const double steep = std::atan2(north_south_m, east_west_m);  // of the diagonals, from the east
+    const double flat = std::numbers::pi / 2 - steep;
+    const double diagonal = std::numbers::pi / 4;  // half of what lies between its two neighbours, a right angle
+    const double between = east_west_m * north_south_m / std::hypot(east_west_m, north_south_m);
+    return {steep * north_south_m / 2, diagonal * between / 2, flat * east_west_m / 2, diagonal * between / 2};
 }
 
 void sort_largest_first(std::vector<Basin>& basins) {
@@ -91,6 +110,54 @@ std::vector<Index> basin_labels(const FlowGraph& graph, std::span<const Basin> b
         label[node] = label[receiver];
     }
     return label;
+}
+
+BasinNodes nodes_of_basins(std::span<const Index> label, Index basins) {
+    BasinNodes rows{std::vector<Index>(basins + 1, 0), {}};
+    for (const Index basin : label) {
+        if (basin != none) ++rows.offset[basin + 1];
+    }
+    for (Index basin = 0; basin < basins; ++basin) rows.offset[basin + 1] += rows.offset[basin];
+    rows.node.resize(rows.offset.back());
+    std::vector<Index> next(rows.offset.begin(), rows.offset.end() - 1);
+    for (Index node = 0; node < label.size(); ++node) {
+        if (label[node] != none) rows.node[next[label[node]]++] = node;
+    }
+    return rows;
+}
+
+std::vector<double> basin_perimeters(const Grid& grid, std::span<const Index> label, Index basins) {
+    check_sizes(grid.size(), label.size(), label.size());
+    std::vector<double> length(basins, 0);
+    const auto crossed = [&](Index a, Index b, double counts) {
+        if (a == b) return;
+        if (a != none) length[a] += counts;
+        if (b != none) length[b] += counts;
+    };
+    // The lines go on beyond the grid: it is bordered by a row and a column of no basin on every side.
+    const std::vector<Index> outside(grid.cols, none);
+    const auto row_of = [&](std::int64_t row) {
+        const bool inside = row >= 0 && row < grid.rows;
+        return inside ? label.subspan(static_cast<std::size_t>(row) * grid.cols, grid.cols) : std::span(outside);
+    };
+    for (std::int64_t row = -1; row < grid.rows; ++row) {
+        const auto own = static_cast<Index>(std::max<std::int64_t>(row, 0));
+        const auto counts = crossing_lengths(grid.east_west[own], row_height(grid, own));
+        const auto upper = row_of(row), lower = row_of(row + 1);
+        Index here = none, south = none;
+        for (Index col = 0; col <= grid.cols; ++col) {
+            const Index east = col < grid.cols ? upper[col] : none, beyond = col < grid.cols ? lower[col] : none;
+            if (here != east || here != south || here != beyond) {
+                crossed(here, east, counts[0]);
+                crossed(here, beyond, counts[1]);
+                crossed(here, south, counts[2]);
+                crossed(east, south, counts[3]);
+            }
+            here = east;
+            south = beyond;
+        }
+    }
+    return length;
 }
 
 }  // namespace thalweg::terrain

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "thalweg/channel/network.hpp"
@@ -33,6 +34,8 @@ std::vector<OrderStatistics> strahler_statistics(const StreamNetwork&);
 struct HortonRatio {
     double regression;  ///< 10^slope of log10(statistic) on order, with the sign that makes it above 1 for the law
     double mean_ratio;  ///< mean of the ratios of successive orders
+    double regression_se;                    ///< from the scatter about the line; NaN with fewer than three orders
+    std::array<double, 2> regression_ci95;   ///< by Student's t
 };
 
 /// Horton's laws (Horton 1945, Schumm 1956): bifurcation, length, area and slope ratio, each above 1 when the law

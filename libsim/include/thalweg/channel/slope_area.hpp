@@ -14,6 +14,7 @@ struct SlopeAreaPoint {
     double area_m2;
     double slope;       ///< m/m along the flow
     double weight = 1;  ///< what it counts in a mean: 1 for a node, its length (m) for a segment
+    Index node = none;  ///< of the graph: the node itself, or a segment's lowest
 };
 
 /// Weighted mean of the points of one bin of area (of their logarithms).

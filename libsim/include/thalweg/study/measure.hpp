@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "thalweg/channel/basin_shape.hpp"
 #include "thalweg/channel/concavity.hpp"
 #include "thalweg/channel/drop_analysis.hpp"
 #include "thalweg/channel/extent.hpp"
@@ -79,11 +80,21 @@ struct RoutedTerrain {
     channel::OffsetOf offset_m;             ///< from node to node; empty: angles are not known
 };
 
+/// Everything that is known of one basin. Measures of channels are of those in the statistics.
 struct BasinStatistics {
     terrain::Basin basin;
-    double relief_m;
-    double hypsometric_integral;
-    Index max_strahler;
+    double relief_m = 0;
+    terrain::Hypsometry hypsometry = {};
+    double length_m = 0;                ///< straight, from the outlet to the farthest node
+    double perimeter_m = 0;             ///< NaN where the topology does not tell it (a mesh)
+    channel::BasinShape shape = {};
+    double asymmetry_percent = 0;       ///< share of the area on the trunk's right; NaN: no trunk, or angles not known
+    double channel_length_m = 0;
+    double drainage_density_per_m = 0;
+    Index sources = 0;
+    Index max_strahler = 0, max_shreve = 0;  ///< at the outlet
+    channel::SlopeArea slope_area = {};      ///< of the slope–area points that lie in it
+    std::array<double, 3> ksn_quartiles{};   ///< of its channel nodes' ksn; NaN where none is known
 };
 
 /// Channels and what is counted on them. Lengths in metres, areas in m².
@@ -145,9 +156,16 @@ struct Statistics {
 
 /// The one pipeline behind analyze, simulate and compare: `slopes` are the slope–area points measured on the terrain in
 /// the way that suits it (segments of carved profiles on a raster, nodes on a mesh); `ground_m` is the surface before
-/// any conditioning, of which the hypsometry and the relief are taken.
+/// any conditioning, of which the hypsometry and the relief are taken; `chi` the long profiles (measure_chi).
 Statistics measure(const RoutedTerrain&, std::span<const double> ground_m, const MeasureOptions&,
-                   std::vector<channel::SlopeAreaPoint> slopes);
+                   std::vector<channel::SlopeAreaPoint> slopes, ChiStatistics chi);
+
+/// Adds to the basins what takes their perimeters (m): those measured on a grid whose cells are labelled as the basins
+/// are numbered.
+void add_perimeters(std::span<const double> perimeter_m, Statistics&);
+
+/// The threshold that the options ask for, or the default for the terrain's area.
+double channel_threshold(const RoutedTerrain&, const MeasureOptions&);
 
 /// 1 where channels run by the options, in complete catchments or not: from the heads or, without any, where the
 /// drainage area (that of divided flow, here or upstream) reaches `threshold_m2`.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <vector>
 
@@ -19,7 +20,10 @@ PositionOf positions(const Raster&);
 Table links_table(const Statistics&, const PositionOf&);
 Table junctions_table(const Statistics&, const PositionOf&);
 
-/// Layer `basins`: one polygon per basin of the statistics; `outlines[i]` belongs to basin i.
+/// basins.csv: one row per basin of the statistics.
+Table basin_values(const Statistics&, const PositionOf&);
+
+/// Layer `basins`: the same with one polygon each; `outlines[i]` belongs to basin i.
 Table basins_table(const Statistics&, const PositionOf&, std::vector<MultiPolygon> outlines);
 
 /// Layer `knickpoints`: points with their prominence (m) and the steepness above and below.
@@ -31,8 +35,23 @@ std::vector<Table> network_layers(const Statistics&, const PositionOf&, std::vec
 /// links.csv: the layer's columns without its lines.
 Table link_values(const Statistics&);
 
+/// junctions.csv and knickpoints.csv: the layers' columns with the place as columns `x` and `y`.
+Table with_coordinates(Table points);
+
+/// basin_hypsometry.csv: each basin's curve, one row per height.
+Table basin_hypsometry_table(const Statistics&);
+
+/// strahler.csv, horton.csv, tokunaga.csv and width_function.csv.
+Table strahler_table(const std::vector<channel::OrderStatistics>&);
+Table horton_table(const channel::HortonRatios&);
+Table tokunaga_table(const channel::Tokunaga&);
+Table width_function_table(const channel::WidthFunction&);
+
 /// chi.csv: one row per channel node; `basin` is the number of the basin its river leaves by, −1 outside of all.
 Table chi_table(const Statistics&, const PositionOf&);
+
+/// Writes every table of the statistics as a CSV of its name.
+void write_statistics(const Statistics&, const PositionOf&, const std::filesystem::path& folder);
 
 /// hypsometry.csv, slope_area.csv (the bins) and slope_area_points.csv.
 Table hypsometry_table(const terrain::Hypsometry&);
