@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/channel/links.hpp"
 
-#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <utility>
 
@@ -19,75 +19,22 @@ LengthStatistics statistics(const std::vector<double>& lengths_m) {
     return {static_cast<Index>(lengths_m.size()), mean(lengths_m), standard_deviation(lengths_m)};
 }
 
-/// Up to two links that flow into each link, and how many there are.
-struct Inflows {
-    Index count = 0;
-    std::array<Index, 2> link{none, none};
-};
-
-std::vector<Inflows> inflows(const StreamNetwork& network) {
-    std::vector<Inflows> all(network.size());
-    for (Index link = 0; link < network.size(); ++link) {
-        if (network.downstream[link] == none) continue;
-        Inflows& below = all[network.downstream[link]];
-        if (below.count < 2) below.link[below.count] = link;
-        ++below.count;
-    }
-    return all;
-}
-
-/// From the link's lower end up to where its direction is taken.
-Point upstream_direction(std::span<const Index> nodes, const OffsetOf& offset, double reach_m) {
-    double along = 0;
-    std::size_t at = nodes.size() - 1;
-    while (at > 0 && along < reach_m) {
-        const Point step = offset(nodes[at], nodes[at - 1]);
-        along += std::hypot(step.x, step.y);
-        --at;
-    }
-    return offset(nodes.back(), nodes[at]);
-}
-
-/// From the link's upper end down to where its direction is taken.
-Point downstream_direction(std::span<const Index> nodes, const OffsetOf& offset, double reach_m) {
-    double along = 0;
-    std::size_t at = 0;
-    while (at + 1 < nodes.size() && along < reach_m) {
-        const Point step = offset(nodes[at], nodes[at + 1]);
-        along += std::hypot(step.x, step.y);
-        ++at;
-    }
-    return offset(nodes.front(), nodes[at]);
-}
-
-double angle_between(const Point& a, const Point& b) {
-    return std::abs(std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
-}
-
 /// Slope below the junction over the slope of an inflow, by Flint's law.
 double slope_ratio(const StreamNetwork& network, Index below, Index inflow, double flint_exponent) {
     return std::pow((2.0 * network.shreve[below] - 1) / (2.0 * network.shreve[inflow] - 1), flint_exponent);
 }
 
-/// The two inflows of a junction, the main one first.
-std::array<Index, 2> main_and_tributary(const StreamNetwork& network, const Inflows& in) {
-    const auto [a, b] = in.link;
-    return network.area_m2[b] > network.area_m2[a] ? std::array{b, a} : std::array{a, b};
-}
-
-/// Whether the tributary that joins above `below` comes from the left, looking downstream.
-bool from_the_left(const StreamNetwork& network, const OffsetOf& offset, double reach_m, const Inflows& in,
+/// Whether the smaller of two inflows comes from the left, looking downstream.
+bool from_the_left(const StreamNetwork& network, const OffsetOf& offset, double reach_m, const JunctionInflows& in,
                    Index below) {
     const auto [main, tributary] = main_and_tributary(network, in);
-    const Point down = downstream_direction(network.nodes_of(below), offset, reach_m);
-    return turn(down, upstream_direction(network.nodes_of(tributary), offset, reach_m)) <
-           turn(down, upstream_direction(network.nodes_of(main), offset, reach_m));
+    return is_left_of(network, offset, reach_m, {.below = below, .main = main, .tributary = tributary});
 }
 
 }  // namespace
 
 CisTrans cis_trans_links(const StreamNetwork& network, const OffsetOf& offset, double reach_m) {
-    const auto inflows_of = inflows(network);
+    const auto inflows_of = junction_inflows(network);
     std::vector<double> cis, trans;
     for (Index link = 0; link < network.size(); ++link) {
         const Index below = network.downstream[link];
@@ -129,7 +76,7 @@ OffsetOf offsets(const Mesh& mesh) {
 JunctionAngles junction_angles(const StreamNetwork& network, const OffsetOf& offset, double reach_m,
                                double flint_exponent) {
     std::vector<double> measured, predicted;
-    const auto inflows_of = inflows(network);
+    const auto inflows_of = junction_inflows(network);
     for (Index below = 0; below < network.size(); ++below) {
         if (inflows_of[below].count != 2) continue;
         const auto [first, second] = inflows_of[below].link;

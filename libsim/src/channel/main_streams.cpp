@@ -3,17 +3,20 @@
 
 #include <algorithm>
 
+#include "channel/directions.hpp"
+
 namespace thalweg::channel {
 
 namespace {
 
-MainStreams streams_of(std::span<const Index> below, std::span<const double> area_m2) {
+/// The inflow with the largest claim carries on.
+MainStreams streams_of(std::span<const Index> below, std::span<const double> claim) {
     const Index rows = static_cast<Index>(below.size());
     std::vector<Index> main_inflow(rows, none);
     for (Index row = 0; row < rows; ++row) {
         if (below[row] == none) continue;
         Index& chosen = main_inflow[below[row]];
-        if (chosen == none || area_m2[row] > area_m2[chosen]) chosen = row;
+        if (chosen == none || claim[row] > claim[chosen]) chosen = row;
     }
     MainStreams s;
     s.stream.resize(rows);
@@ -109,6 +112,17 @@ MainStreams main_streams(const Profile& profile) { return streams_of(profile.bel
 
 MainStreams main_streams(const StreamNetwork& network) { return streams_of(network.downstream, network.area_m2); }
 
+MainStreams straightest_streams(const StreamNetwork& network, const OffsetOf& offset, double reach_m) {
+    std::vector<double> straightness(network.size(), 0);
+    for (Index link = 0; link < network.size(); ++link) {
+        const Index below = network.downstream[link];
+        if (below == none) continue;
+        straightness[link] = angle_between(downstream_direction(network.nodes_of(below), offset, reach_m),
+                                           upstream_direction(network.nodes_of(link), offset, reach_m));
+    }
+    return streams_of(network.downstream, straightness);
+}
+
 std::vector<std::int64_t> pfafstetter_codes(const StreamNetwork& network) {
     const Inflows inflows(network);
     std::vector<std::int64_t> code(network.size(), 0);
@@ -134,7 +148,8 @@ std::vector<std::int64_t> pfafstetter_codes(const StreamNetwork& network) {
             taken[t.link] = 1;
             const bool last = t.above + 1 == stem.links.size();
             const Index next = last ? piece.cut : stem.links[t.above + 1];
-            if (mouth != none && mouth != next) open.push_back({mouth, next, piece.code * 10 + digit, piece.digits + 1});
+            if (mouth != none && mouth != next)
+                open.push_back({mouth, next, piece.code * 10 + digit, piece.digits + 1});
             open.push_back({t.link, none, piece.code * 10 + digit + 1, piece.digits + 1});
             mouth = next;
             digit += 2;

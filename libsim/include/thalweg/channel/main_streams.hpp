@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "thalweg/channel/links.hpp"
 #include "thalweg/channel/network.hpp"
 #include "thalweg/channel/profile.hpp"
 
@@ -23,6 +24,10 @@ struct MainStreams {
 MainStreams main_streams(const Profile&);
 /// The same with links as rows.
 MainStreams main_streams(const StreamNetwork&);
+
+/// The same, but the inflow that goes straightest on carries on upstream: the one whose direction departs least from
+/// that of the link below (Horton 1945), both taken over `reach_m` as for junction angles. Ties: the first.
+MainStreams straightest_streams(const StreamNetwork&, const OffsetOf&, double reach_m);
 
 /// Pfafstetter's code of each link (Verdin & Verdin 1999): of every river the four tributaries with the largest
 /// drainage area are numbered 2, 4, 6 and 8 from the mouth up, the reaches of the main stream between them 1, 3, 5, 7

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/grow/valleys.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <unordered_set>
+
+#include "grow/plane.hpp"
+
+namespace thalweg::grow {
+namespace {
+
+constexpr int samples_per_line = 8;
+
+/// Both directions of a line in one number.
+std::uint64_t line_between(Index a, Index b) { return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b); }
+
+/// Lines of the subdivision that are no ridges.
+std::unordered_set<std::uint64_t> inner_lines(const Network& network) {
+    std::unordered_set<std::uint64_t> lines;
+    for (const Edge& edge : network.edges) {
+        const bool is_inner = edge.kind == EdgeKind::channel || edge.kind == EdgeKind::head;
+        if (is_inner) lines.insert(line_between(edge.from, edge.to));
+    }
+    return lines;
+}
+
+struct Foot {
+    Point place;
+    double elevation_m;
+};
+
+/// The nearest point of the link.
+Foot foot_of(const Network& network, std::span<const double> elevation_m, Index link, const Point& p) {
+    const Point& lower = network.vertices[network.lower[link]];
+    const Point along = network.vertices[network.upper[link]] - lower;
+    const double share = std::clamp(dot(p - lower, along) / dot(along, along), 0.0, 1.0);
+    const double low = elevation_m[network.lower[link]], high = elevation_m[network.upper[link]];
+    return {lower + share * along, low + share * (high - low)};
+}
+
+void add_ridge(const Network& network, std::span<const double> elevation_m, std::array<Index, 2> ends,
+               channel::ValleySide& side) {
+    const Point& from = network.vertices[ends[0]];
+    const Point along = network.vertices[ends[1]] - from;
+    const double piece = norm(along) / samples_per_line;
+    for (int i = 0; i < samples_per_line; ++i) {
+        const double share = (i + 0.5) / samples_per_line;
+        const Point p = from + share * along;
+        const Foot foot = foot_of(network, elevation_m, side.link, p);
+        const double height = (1 - share) * elevation_m[ends[0]] + share * elevation_m[ends[1]];
+        side.ridge_m += piece;
+        side.rise_m += piece * (height - foot.elevation_m);
+        side.run_m += piece * norm(p - foot.place);
+    }
+}
+
+}  // namespace
+
+channel::OffsetOf offsets(const Network& network) {
+    return [&network](Index from, Index to) { return network.vertices[to] - network.vertices[from]; };
+}
+
+std::vector<double> beyond_sources(const Network& network) {
+    std::vector<double> beyond(network.size(), 0);
+    for (Index link = 0; link < network.size(); ++link) {
+        if (!network.is_exterior(link)) continue;
+        const Index divide = network.polygon(link, Side::left)[2];  // after the link comes its head, one straight line
+        beyond[link] = norm(network.vertices[divide] - network.vertices[network.upper[link]]);
+    }
+    return beyond;
+}
+
+std::vector<channel::ValleySide> valley_sides(const Network& network, std::span<const double> elevation_m) {
+    const auto inner = inner_lines(network);
+    std::vector<channel::ValleySide> sides;
+    for (Index link = 0; link < network.size(); ++link) {
+        for (const Side hand : {Side::right, Side::left}) {  // looking upstream; the other way round downstream
+            channel::ValleySide side{.link = link,
+                                     .bank = hand == Side::right ? channel::Bank::left : channel::Bank::right};
+            const auto polygon = network.polygon(link, hand);
+            for (std::size_t i = 0; i < polygon.size(); ++i) {
+                const std::array ends{polygon[i], polygon[(i + 1) % polygon.size()]};
+                if (!inner.contains(line_between(ends[0], ends[1]))) add_ridge(network, elevation_m, ends, side);
+            }
+            if (side.ridge_m == 0) continue;
+            side.rise_m /= side.ridge_m;
+            side.run_m /= side.ridge_m;
+            sides.push_back(side);
+        }
+    }
+    return sides;
+}
+
+channel::GrowthMeasures growth_measures(const Network& network, std::span<const double> elevation_m) {
+    const channel::StreamNetwork streams = stream_network(network, elevation_m);
+    return channel::growth_measures({.network = streams,
+                                     .offset_m = offsets(network),
+                                     .reach_m = std::numeric_limits<double>::infinity(),  // links are straight
+                                     .beyond_source_m = beyond_sources(network),
+                                     .valley_sides = valley_sides(network, elevation_m)});
+}
+
+}  // namespace thalweg::grow

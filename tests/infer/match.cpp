@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/infer/match.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+#include <limits>
+
+#include "thalweg/core/error.hpp"
+#include "thalweg/core/parallel.hpp"
+#include "thalweg/core/random.hpp"
+
+using namespace thalweg;
+using infer::Match;
+using infer::match;
+using infer::MatchOptions;
+
+namespace {
+
+constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+
+/// s = p + noise, in each coordinate alone, of standard deviation `sd`.
+infer::RandomModel noisy_copy(double sd) {
+    return [sd](std::span<const double> p, std::uint64_t seed) {
+        Random random(seed, 9);
+        std::vector<double> s;
+        for (const double value : p) s.push_back(value + sd * random.normal());
+        return s;
+    };
+}
+
+/// A bent model: both statistics depend on both parameters.
+std::vector<double> bent(std::span<const double> p, std::uint64_t seed) {
+    Random random(seed, 10);
+    const double a = p[0], b = p[1];
+    return {std::exp(a) + 0.5 * b + 0.1 * random.normal(), a * a + 2 * b + 0.2 * random.normal()};
+}
+
+}  // namespace
+
+TEST_CASE("A linear model with normal noise gives the estimate that theory gives") {
+    // Prior: uniform on [0, 12], variance 12; noise 2: the estimate is (s/4 + 6/12)/(1/4 + 1/12), its variance 3.
+    const MatchOptions options{.ranges = {{0, 12}, {0, 12}}, .rounds = 4, .draws = 20000, .seed = 3};
+    const std::vector<double> target{4, 9};
+    const Match found = match(noisy_copy(2), target, options);
+    for (std::size_t i = 0; i < 2; ++i) {
+        CHECK(found.parameters[i].value == Approx((target[i] / 4 + 0.5) * 3).margin(0.05));
+        CHECK(found.parameters[i].standard_error == Approx(std::sqrt(3.0)).epsilon(0.02));
+    }
+}
+
+TEST_CASE("A parameter that changes nothing stays in the middle of its range, with an error as wide") {
+    const auto model = [](std::span<const double> p, std::uint64_t seed) {
+        Random random(seed, 11);
+        return std::vector<double>{p[0] + 0.01 * random.normal()};
+    };
+    const Match found =
+        match(model, std::vector<double>{0.3}, {.ranges = {{0, 1}, {2, 4}}, .rounds = 4, .draws = 300, .seed = 1});
+    CHECK(found.parameters[0].value == Approx(0.3).margin(0.005));
+    CHECK(found.parameters[1].value == Approx(3).margin(0.1));
+    CHECK(found.parameters[1].standard_error == Approx(2 / std::sqrt(12.0)).epsilon(0.05));
+    CHECK(found.identified[0] == 1);
+    CHECK(found.identified[1] == 0);
+}
+
+TEST_CASE("The intervals of a bent model cover the truth as often as they say") {
+    int covered = 0, all = 0;
+    for (std::uint64_t seed = 1; seed <= 150; ++seed) {
+        Random random(seed, 12);
+        const std::vector<double> truth{-0.8 + 1.6 * random.uniform(), 0.2 + 0.6 * random.uniform()};
+        const auto target = bent(truth, 5000 + seed);
+        const Match found =
+            match(bent, target, {.ranges = {{-1, 1}, {0, 1}}, .rounds = 4, .draws = 100, .seed = 77 * seed});
+        for (std::size_t i = 0; i < 2; ++i, ++all) {
+            covered += found.parameters[i].interval95[0] <= truth[i] && truth[i] <= found.parameters[i].interval95[1];
+        }
+    }
+    CHECK(covered > 0.9 * all);
+    CHECK(covered < 0.99 * all);
+}
+
+TEST_CASE("Estimates stay in their ranges, and statistics that were not measured are left out") {
+    const MatchOptions options{.ranges = {{0, 1}, {0, 1}}, .rounds = 3, .draws = 200, .seed = 1};
+    const Match beyond = match(noisy_copy(0.01), std::vector<double>{1.7, unknown}, options);
+    CHECK(beyond.parameters[0].value == Approx(1).margin(1e-12));
+    CHECK(beyond.parameters[0].interval95[1] <= 1);
+    CHECK(beyond.identified[1] == 0);
+    const Match nothing = match(noisy_copy(0.01), std::vector<double>{unknown, unknown}, options);
+    CHECK(nothing.parameters[0].value == 0.5);
+    CHECK(nothing.identified[0] == 0);
+}
+
+TEST_CASE("Statistics that repeat each other do no harm") {
+    const auto model = [](std::span<const double> p, std::uint64_t seed) {
+        Random random(seed, 13);
+        const double s = p[0] + 0.1 * random.normal();
+        return std::vector<double>{s, 1 - s};
+    };
+    const Match found =
+        match(model, std::vector<double>{0.4, 0.6}, {.ranges = {{0, 1}}, .rounds = 3, .draws = 400, .seed = 1});
+    CHECK(found.parameters[0].value == Approx(0.4).margin(0.03));
+    CHECK(found.parameters[0].standard_error == Approx(0.0945).epsilon(0.15));  // 1/√(100 + 12)
+}
+
+TEST_CASE("A model that hardly ever has all statistics is refused") {
+    const auto model = [](std::span<const double> p, std::uint64_t seed) {
+        return std::vector<double>{seed % 100 == 0 ? p[0] : unknown};
+    };
+    CHECK_THROWS_AS(match(model, std::vector<double>{0.4}, {.ranges = {{0, 1}}}), Error);
+}
+
+TEST_CASE("A match is the same for any number of threads") {
+    const MatchOptions options{.ranges = {{-1, 1}, {0, 1}}, .rounds = 3, .draws = 100, .seed = 4};
+    const auto with = [&](int threads) {
+        const ThreadLimit limit(threads);
+        return match(bent, std::vector<double>{1.5, 1.2}, options).parameters;
+    };
+    const auto one = with(1), three = with(3);
+    for (std::size_t i = 0; i < one.size(); ++i) CHECK(one[i].value == three[i].value);
+}

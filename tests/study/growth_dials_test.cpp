@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/growth_dials.hpp"
+
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/basins.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/core/parallel.hpp"
+#include "thalweg/grow/elevations.hpp"
+#include "thalweg/grow/valleys.hpp"
+
+using namespace thalweg;
+using namespace thalweg::study;
+
+namespace {
+
+/// Dials well within their ranges.
+grow::Dials drawn_dials(std::uint64_t seed) {
+    Random random(seed, 5);
+    grow::Dials dials;
+    dials.channel_maintenance_m = 1000;
+    dials.mean_junction = 0.3 + 0.4 * random.uniform();
+    dials.delta_junction = 0.1 + 0.3 * random.uniform();
+    dials.mean_length = 0.4 + 0.4 * random.uniform();
+    dials.delta_length = 0.05 + 0.25 * random.uniform();
+    dials.sidewall_angle_deg = 15 + 20 * random.uniform();
+    dials.delta_sidewall_angle_deg = 10 * random.uniform();
+    dials.lower_bias = random.uniform();
+    dials.middle_bias = random.uniform();
+    dials.flint.q = -0.4 - 0.4 * random.uniform();
+    dials.seed = 1000 + seed;
+    return dials;
+}
+
+channel::GrowthMeasures grown_measures(const grow::Basin& basin, const grow::Dials& dials) {
+    const grow::Network network = grow::grow(basin, dials).network;
+    return grow::growth_measures(network, grow::elevations(network, dials.flint, basin.base_level_m));
+}
+
+std::array<double, 8> matched(const grow::Dials& d) {
+    return {d.mean_junction,      d.delta_junction,           d.mean_length, d.delta_length,
+            d.sidewall_angle_deg, d.delta_sidewall_angle_deg, d.lower_bias,  d.middle_bias};
+}
+
+}  // namespace
+
+TEST_CASE("Dials found on grown networks are those put in, within their stated errors") {
+    const grow::Basin basin = support::square_basin(10000);
+    constexpr int trials = 6;
+    int covered = 0;
+    std::array<double, 8> squares{};
+    for (std::uint64_t seed = 1; seed <= trials; ++seed) {
+        const grow::Dials truth = drawn_dials(seed);
+        const DialsFit fit = fit_dials(basin, grown_measures(basin, truth), 7 * seed);
+        CHECK(fit.dials.channel_maintenance_m == Approx(1000).epsilon(0.01));
+        CHECK(fit.dials.flint.p == Approx(truth.flint.p).epsilon(0.01));
+        CHECK(fit.dials.flint.q == Approx(truth.flint.q).margin(0.01));
+        REQUIRE(fit.table.size() == 11);
+        const auto put_in = matched(truth), found = matched(fit.dials);
+        for (std::size_t i = 0; i < put_in.size(); ++i) {
+            const double error = fit.table[3 + i].value.standard_error;
+            covered += std::abs(found[i] - put_in[i]) < 1.96 * error;
+            squares[i] += std::pow((found[i] - put_in[i]) / error, 2);
+        }
+    }
+    CHECK(covered >= 0.85 * 8 * trials);
+    for (std::size_t i = 0; i < squares.size(); ++i) {
+        INFO(i);
+        CHECK(std::sqrt(squares[i] / trials) < 2);
+    }
+}
+
+TEST_CASE("Networks grown with fitted dials measure like the one that was measured") {
+    const grow::Basin basin = support::square_basin(10000);
+    const grow::Dials truth = drawn_dials(3);
+    const DialsFit fit = fit_dials(basin, grown_measures(basin, truth), 1);
+    for (const MeasureCheck& check : fit.check) {
+        INFO(check.name);
+        const double close = 3e-3 * std::abs(check.measured);  // what the dials set outright has no spread
+        CHECK(std::abs(check.measured - check.grown_mean) < 3.5 * check.grown_sd + close);
+    }
+}
+
+TEST_CASE("Fitted dials are the same for any number of threads, and others for another seed") {
+    const grow::Basin basin = support::square_basin(6000);
+    const auto measures = grown_measures(basin, drawn_dials(2));
+    const auto with = [&](int threads, std::uint64_t seed) {
+        const ThreadLimit limit(threads);
+        return matched(fit_dials(basin, measures, seed).dials);
+    };
+    CHECK(with(1, 1) == with(3, 1));
+    CHECK(with(1, 1) != with(1, 2));
+}
+
+TEST_CASE("What was not measured is left open, and what cannot be grown is said") {
+    const grow::Basin basin = support::square_basin(6000);
+    auto measures = grown_measures(basin, drawn_dials(2));
+    measures.side_choices.obtuse[0] = {0, std::nan(""), std::nan("")};
+    const DialsFit fit = fit_dials(basin, measures, 1);
+    CHECK_FALSE(fit.table[9].identified);
+    CHECK(fit.table[9].name == "lower_bias");
+    CHECK(fit.dials.lower_bias == Approx(0.5).margin(0.15));
+    auto steep = measures;
+    steep.flint.exponent.value = 0.2;
+    const DialsFit bent = fit_dials(basin, steep, 1);
+    CHECK(bent.dials.flint.q == -0.05);
+    CHECK(bent.notes.front().starts_with("flint_q"));
+    auto dry = measures;
+    dry.channel_maintenance_m.value = std::nan("");
+    CHECK_THROWS_AS(fit_dials(basin, dry, 1), Error);
+    auto level = measures;
+    level.flint.coefficient.value = 0;
+    CHECK_THROWS_AS(fit_dials(basin, level, 1), Error);
+}
