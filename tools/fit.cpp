@@ -14,7 +14,7 @@ struct Options {
     CommonOptions common;
     DemOptions dem;
     std::string target;
-    std::string uplift, uplift_sd, n, theta_fixed, area_min, area_max;
+    std::string uplift, uplift_sd, n, deposition_g, theta_fixed, area_min, area_max;
     std::string method = "slope-area";
     std::string from = "nodes";
 };
@@ -32,6 +32,7 @@ study::FitOptions fit_options(const Options& options) {
     fit.fit.uplift_sd_m_per_yr = given("--uplift-sd", options.uplift_sd, Sign::not_negative).value_or(0);
     fit.fit.n = given("--n", options.n, Sign::positive).value_or(1);
     if (fit.fit.n < 0.3 || fit.fit.n > 5) throw Error("--n must lie between 0.3 and 5, not " + options.n);
+    fit.fit.deposition_g = given("--deposition-g", options.deposition_g, Sign::not_negative).value_or(0);
     fit.fit.theta_fixed = given("--theta-fixed", options.theta_fixed, Sign::positive);
     if (fit.fit.theta_fixed.value_or(0) > 5) throw Error("--theta-fixed must be at most 5, not " + options.theta_fixed);
     fit.fit.area_min_m2 = given("--area-min-m2", options.area_min, Sign::not_negative);
@@ -56,6 +57,8 @@ void add_fit(CLI::App& app) {
                         "uplift rate; without it only theta, ks and k/u are told");
     command->add_option("--uplift-sd", options->uplift_sd, "its standard deviation (m/yr), carried into k's error");
     command->add_option("--n", options->n, "slope exponent [default: 1]");
+    command->add_option("--deposition-g", options->deposition_g,
+                        "G of rivers that lay down sediment: slopes tell k/((1 + G)*u) [default: 0]");
     command->add_option("--method", options->method, "what is matched")->check(CLI::IsMember({"slope-area"}));
     command->add_option("--area-min-m2", options->area_min, "smallest drainage area in the fit");
     command->add_option("--area-max-m2", options->area_max, "largest drainage area in the fit");

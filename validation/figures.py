@@ -45,6 +45,7 @@ FIGURES = {
     r"cell_areas": (TOLERANCE, "Sum of cells over the domain's area, minus 1", 1e-12),
     r"memory_order": (ORDER, "Numbers between neighbours, nine in ten: along a Hilbert curve", 0),
     r"solids": (TOLERANCE, "Closed solids: volume in another program over ours, minus 1", 1e-8),
+    r"recovery_with_deposition": (TOLERANCE, "Blind fits with G = 0.5, 1, 2: k·A0^m off by", 0.1),
     r"knickpoint_places": (SPREAD, "Knickpoints' χ over that of the wave", 1),
 }
 

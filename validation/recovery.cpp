@@ -37,7 +37,8 @@ struct Bias {
 };
 
 Bias bias(std::span<const channel::SlopeAreaPoint> points, const evolve::River& river) {
-    const auto fit = infer::fit_slope_area(channel::slope_area_bins(points), {.n = river.n, .uplift_m_per_yr = uplift});
+    const auto fit = infer::fit_slope_area(channel::slope_area_bins(points),
+                                           {.n = river.n, .uplift_m_per_yr = uplift, .deposition_g = river.g});
     const double fitted = fit.k_at_reference_area.value * std::pow(reference_area / fit.reference_area_m2, fit.m.value);
     return {fit.m.value - river.m, fitted / (river.k * std::pow(reference_area, river.m)) - 1};
 }
@@ -111,4 +112,32 @@ TEST_CASE("A TIN drawn on a raster loses part of the truth, and how much is know
         CHECK(std::abs(b.m) < 0.1);
         CHECK(std::abs(b.k_at_reference) < 1);
     }
+}
+
+TEST_CASE(
+    "k and m of rivers that lay down sediment come back to 0.001 and 1 % from nodes, to 0.02 and 10 % from heights") {
+    const Grid grid = island_grid(100);
+    Categories off;
+    for (const double n : {1.0, 1.5}) {
+        for (const double g : {0.5, 1.0, 2.0}) {
+            evolve::River river = law(0.45 * n, n);
+            river.g = g;
+            const std::string what = fmt::format("n = {:g}, G = {:g}", n, g);
+            const Bias tin = on_nodes(island_mesh(5000, 1), river, 1), nodes = on_nodes(grid, river, 1);
+            const Bias dem = as_dem(grid, steady(grid, river, 1).elevation_m, river);
+            report(("TIN nodes, " + what).c_str(), river.m, n, tin);
+            report(("raster nodes, " + what).c_str(), river.m, n, nodes);
+            report(("raster heights, " + what).c_str(), river.m, n, dem);
+            for (const Bias& b : {tin, nodes}) {
+                CHECK(std::abs(b.m) < 1e-3);
+                CHECK(std::abs(b.k_at_reference) < 0.01);
+            }
+            CHECK(std::abs(dem.m) < 0.02);
+            CHECK(std::abs(dem.k_at_reference) < 0.1);
+            off.add("TIN nodes", std::abs(tin.k_at_reference));
+            off.add("raster nodes", std::abs(nodes.k_at_reference));
+            off.add("raster heights as a DEM", std::abs(dem.k_at_reference));
+        }
+    }
+    write_series("recovery_with_deposition", off);
 }

@@ -200,6 +200,23 @@ TEST_CASE("Where a bin is resisted, errors of steepness and k are those of the w
     CHECK(fit.correlation_log_k_m == Approx(-sx / std::sqrt(s * sxx)).epsilon(1e-4));
 }
 
+TEST_CASE("With deposition k and k/u are 1 + G times as large, and theta, ks and m the same") {
+    Random random(2, 1);
+    std::vector<SlopeAreaBin> bins = exact_bins({}, 20, 0.05);
+    scatter(bins, 0.1, random);
+    const SlopeAreaFit plain = fit_slope_area(bins, {.n = 1.5, .uplift_m_per_yr = 1e-4});
+    const SlopeAreaFit with = fit_slope_area(bins, {.n = 1.5, .uplift_m_per_yr = 1e-4, .deposition_g = 0.7});
+    CHECK(with.k->value == Approx(1.7 * plain.k->value).epsilon(1e-12));
+    CHECK(with.k->interval95[1] == Approx(1.7 * plain.k->interval95[1]).epsilon(1e-12));
+    CHECK(with.k->standard_error == Approx(1.7 * plain.k->standard_error).epsilon(1e-12));
+    CHECK(with.k_over_uplift.value == Approx(1.7 * plain.k_over_uplift.value).epsilon(1e-12));
+    CHECK(with.k_at_reference_area.value == Approx(1.7 * plain.k_at_reference_area.value).epsilon(1e-12));
+    CHECK(with.ks.value == plain.ks.value);
+    CHECK(with.theta.value == plain.theta.value);
+    CHECK(with.m.value == plain.m.value);
+    CHECK(with.correlation_log_k_m == plain.correlation_log_k_m);
+}
+
 TEST_CASE("Without an uplift rate k is unknown but k/u is told") {
     const PowerLaw law;
     const SlopeAreaFit fit = fit_slope_area(exact_bins(law, 15), SlopeAreaFitOptions{});
@@ -340,6 +357,7 @@ TEST_CASE("What cannot be fitted is refused in one sentence") {
     CHECK(message(bins, {.n = 0}).find("n must be") != std::string::npos);
     CHECK(message(bins, {.uplift_m_per_yr = -1e-4}).find("uplift rate") != std::string::npos);
     CHECK(message(bins, {.uplift_sd_m_per_yr = -1}).find("standard deviation") != std::string::npos);
+    CHECK(message(bins, {.deposition_g = -1}).find("G must be 0 or more") != std::string::npos);
     CHECK(message(bins, {.area_min_m2 = 1e6, .area_max_m2 = 1e5}).find("span a range") != std::string::npos);
     CHECK(message(bins, {.theta_fixed = std::nan("")}).find("theta") != std::string::npos);
     CHECK(message(bins, {.smallest_se_dex = 0}).find("dex") != std::string::npos);

@@ -154,12 +154,14 @@ TEST_CASE("The fit of a study is that of its basin with the study's exponent, up
     e.study.area_min_m2 = 1e6;
     e.study.area_max_m2 = 1e7;
     e.river.n = 2;
+    e.deposition.g = 0.5;
     std::filesystem::create_directory(temp / "study");
     run_study(e, Figures::leave_out, temp / "study", {});
     const Json in_study = Json::parse(test::bytes_of(temp / "study/fit/fit.json"));
 
     FitOptions options;
     options.fit.n = 2;
+    options.fit.deposition_g = 0.5;
     options.fit.uplift_m_per_yr = uplift;
     options.fit.uplift_sd_m_per_yr = 1e-4;
     options.fit.area_min_m2 = 1e6;
@@ -167,6 +169,7 @@ TEST_CASE("The fit of a study is that of its basin with the study's exponent, up
     const Json alone = fitted(temp / "study/basin", temp / "fit", options);
     CHECK(in_study == alone);
     CHECK(in_study["n"] == 2.0);
+    CHECK(in_study["deposition_g"] == 0.5);
     CHECK(in_study["uplift_sd_m_per_yr"] == 1e-4);
     CHECK(in_study["area_range_m2"][0].get<double>() >= 1e6);
     CHECK(in_study["area_range_m2"][1].get<double>() <= 1e7);

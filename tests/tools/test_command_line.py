@@ -233,6 +233,7 @@ class CommandLine(unittest.TestCase):
         out = ["--no-figures", "--out", self.here / "out"]
         for value in ("1e-300", "0.29", "1e300"):
             self.refused("fit", DEM, "--n", value, *out, saying="--n")
+        self.refused("fit", DEM, "--deposition-g", "-0.1", *out, saying="--deposition-g")
         self.refused("fit", DEM, "--theta-fixed", "1e300", *out, saying="--theta-fixed")
 
     def test_the_user_is_warned_where_most_rivers_are_left_out_or_a_run_is_not_steady(self):

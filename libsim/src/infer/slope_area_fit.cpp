@@ -66,6 +66,9 @@ void check(const SlopeAreaFitOptions& options) {
         throw Error(
             fmt::format("the uplift's standard deviation must be 0 or more m/yr, not {}", options.uplift_sd_m_per_yr));
     }
+    if (!(options.deposition_g >= 0) || std::isinf(options.deposition_g)) {
+        throw Error(fmt::format("deposition's G must be 0 or more, not {}", options.deposition_g));
+    }
     if (options.theta_fixed && !std::isfinite(*options.theta_fixed)) {
         throw Error(fmt::format("theta can be fixed at a finite number only, not at {}", *options.theta_fixed));
     }
@@ -238,16 +241,17 @@ Estimate fit_curvature(const Target& target) {
 
 void fill_rates(SlopeAreaFit& fit, const Solution& at, const SlopeAreaFitOptions& options, const Uncertainty& with,
                 double log_area) {
-    const double log_ratio = at.a - at.m * log_area;  // ln(k/u)
+    const double log_ratio = at.a - at.m * log_area;          // −n·ln ks
+    const double carried = std::log1p(options.deposition_g);  // what a river lays down it digs again
     const double variance = at.variance_a + log_area * log_area * at.variance_m - 2 * log_area * at.covariance;
     fit.theta = with.plain(at.m / fit.n, at.variance_m / (fit.n * fit.n));
     fit.ks = with.logarithmic(-log_ratio / fit.n, variance / (fit.n * fit.n));
     fit.m = with.plain(at.m, at.variance_m);
-    fit.k_over_uplift = with.logarithmic(log_ratio, variance);
+    fit.k_over_uplift = with.logarithmic(carried + log_ratio, variance);
     fit.k_unit = fmt::format("m^{:.4g}/yr", 1 - 2 * at.m);
     double uplift_variance = 0;
     if (options.uplift_m_per_yr) {
-        const double log_uplift = std::log(*options.uplift_m_per_yr);
+        const double log_uplift = std::log(*options.uplift_m_per_yr) + carried;
         const double relative = options.uplift_sd_m_per_yr / *options.uplift_m_per_yr;
         uplift_variance = relative * relative;
         fit.k = with.logarithmic(log_uplift + log_ratio, variance, uplift_variance);
@@ -269,6 +273,10 @@ void fill_remarks(SlopeAreaFit& fit, const SlopeAreaFitOptions& options) {
             "Slope and area alone give theta, ks and, for n = {:g}, k/u; for k give the uplift rate.", fit.n));
     }
     fit.notes.push_back(fmt::format("n = {:g} is assumed: slope and area give m/n only.", fit.n));
+    if (options.deposition_g > 0) {
+        fit.notes.push_back(
+            fmt::format("G = {:g} is assumed: slope and area give k/((1 + G)*u) only.", options.deposition_g));
+    }
     if (options.theta_fixed) fit.notes.push_back("theta was held fixed, so m has no error of its own.");
     if (fit.curvature.interval95[0] > 0 || fit.curvature.interval95[1] < 0) {
         fit.notes.push_back(fmt::format(

@@ -110,6 +110,7 @@ Json fit_json(const infer::SlopeAreaFit& f, const FitOptions& options, const Tar
             {"n", f.n},
             {"uplift_m_per_yr", u ? Json(*u) : Json(nullptr)},
             {"uplift_sd_m_per_yr", options.fit.uplift_sd_m_per_yr},
+            {"deposition_g", options.fit.deposition_g},
             {"k", value_or_null(f.k)},
             {"k_unit", f.k_unit},
             {"k_se", se_or_null(f.k)},

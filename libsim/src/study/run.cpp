@@ -79,6 +79,7 @@ FitOptions fit_options(const Experiment& e) {
     options.fit.n = e.river.n;
     options.fit.uplift_m_per_yr = e.study.uplift_m_per_yr;
     options.fit.uplift_sd_m_per_yr = e.study.uplift_sd_m_per_yr;
+    options.fit.deposition_g = e.deposition.g;
     options.fit.area_min_m2 = e.study.area_min_m2;
     options.fit.area_max_m2 = e.study.area_max_m2;
     return options;

@@ -17,12 +17,17 @@ struct SlopeAreaFitOptions {
     double n = 1;                                        ///< slope exponent, given; > 0
     std::optional<double> uplift_m_per_yr{};             ///< > 0; without it only θ, ks and k/u can be told
     double uplift_sd_m_per_yr = 0;                       ///< ≥ 0, carried into k's error
+    double deposition_g = 0;                             ///< G ≥ 0 of rivers that lay down sediment
     std::optional<double> theta_fixed{};                 ///< concavity held at this value
     std::optional<double> area_min_m2{}, area_max_m2{};  ///< bins whose mean area lies outside are left out
     double smallest_se_dex = 0.01;                       ///< floor of a bin's standard error; > 0
 };
 
 /// k and m with their uncertainties (k in m^(1−2m)/yr).
+///
+/// Rivers that lay down sediment (G > 0; Davy & Lague 2009; Yuan et al. 2019) rest under even uplift and rain on slopes
+/// ks·A^(−θ) with ks = ((1 + G)·u/k)^(1/n): slope and area tell k/((1 + G)·u), and k with u and G given. θ, ks and m are
+/// those without deposition.
 ///
 /// Errors. A bin weighs by the error of its mean (`channel::bin_errors`: moderated and floored). Residuals
 /// beyond 1.345 robust standard deviations (1.4826·median |r|, at least the stated errors) count linearly (Huber 1964).
@@ -37,8 +42,8 @@ struct SlopeAreaFit {
     double n;
     Estimate theta, ks;            ///< S = ks·A^(−θ); ks in m^(2θ)
     Estimate m;                    ///< = n·θ; with `theta_fixed` without error
-    Estimate k_over_uplift;        ///< ks^(−n), m^(−2m)
-    std::optional<Estimate> k;     ///< uplift·ks^(−n)
+    Estimate k_over_uplift;        ///< (1 + G)·ks^(−n), m^(−2m)
+    std::optional<Estimate> k;     ///< uplift·(1 + G)·ks^(−n)
     std::string k_unit;            ///< of k at the fitted m, e.g. "m^0.1/yr"
     double reference_area_m2;      ///< A0: geometric mean area of the bins, weighted: where k·A^m is known best
     Estimate k_at_reference_area;  ///< k·A0^m, m/yr; NaN without uplift
@@ -57,9 +62,9 @@ struct SlopeAreaFit {
     std::vector<double> fitted_slope;         ///< the curve at those bins
 };
 
-/// Weighted least squares of ln S = (ln u − ln(k·A0^m) − m·ln(A/A0))/n on the bins with Ceres (Huber loss, one thread),
+/// Weighted least squares of ln S = (ln((1 + G)·u) − ln(k·A0^m) − m·ln(A/A0))/n on the bins with Ceres (Huber loss, one thread),
 /// errors from Ceres' covariance. Bins without a positive, finite area and slope are left out. Throws Error with fewer
-/// than three bins in the range, or if n, the uplift, its sd, the range or the floor is not as required.
+/// than three bins in the range, or if n, the uplift, its sd, G, the range or the floor is not as required.
 SlopeAreaFit fit_slope_area(std::span<const channel::SlopeAreaBin>, const SlopeAreaFitOptions&);
 
 }  // namespace thalweg::infer
