@@ -24,6 +24,7 @@ const std::map<std::string, study::ChannelRule> channel_rules{{"area", study::Ch
 struct Options {
     CommonOptions common;
     DemOptions dem;
+    OutletOptions outlet;
     std::string file, theta, knickpoint_prominence, heads, channels, slope_area;
     std::string conditioning = "fill";
     std::string routing = "d8";
@@ -59,8 +60,10 @@ void run(const Options& options) {
             parse_number("--knickpoint-prominence-m", options.knickpoint_prominence, Sign::positive);
     }
     const io::ReadOptions read = read_options(options.dem);
+    const auto outlet = outlet_request(options.outlet);
     run_into_folder(options.common, "analyze", [&](const auto& folder, const study::Messages& m) {
-        const study::NamedRaster dem = study::read_dem(options.file, read, m);
+        study::NamedRaster dem = study::read_dem(options.file, read, m);
+        if (outlet) dem = study::cut_to_outlet(dem, *outlet, measure, m);
         if (!options.heads.empty()) measure.heads = study::read_channel_heads(options.heads, dem.raster, m);
         return study::analyze(dem, measure, folder, m);
     });
@@ -95,6 +98,7 @@ void add_analyze(CLI::App& app) {
     command->add_option("--knickpoint-prominence-m", options->knickpoint_prominence,
                         "height above the steepest concave profile from which a place is a knickpoint [default: 5 % of "
                         "the rivers' relief]");
+    add_outlet_options(*command, options->outlet);
     add_dem_options(*command, options->dem);
     add_common_options(*command, options->common, "analysis");
     command->callback([options] { run(*options); });

@@ -57,6 +57,25 @@ study::MeasureOptions measure_options(const DemOptions& options) {
     return measure;
 }
 
+void add_outlet_options(CLI::App& app, OutletOptions& options) {
+    app.add_option("--outlet", options.at,
+                   "measure only the basin above this place: X Y in the DEM's coordinates, moved to the river near it")
+        ->expected(2)
+        ->type_name("X Y");
+    app.add_option("--snap-m", options.snap_m, "how far the outlet may be moved, 0 for not at all [default: 5 cells]");
+}
+
+std::optional<study::OutletRequest> outlet_request(const OutletOptions& options) {
+    if (options.at.empty()) {
+        if (!options.snap_m.empty()) throw Error("--snap-m moves the place of --outlet, which is not given");
+        return std::nullopt;
+    }
+    study::OutletRequest request{
+        {parse_number("--outlet", options.at[0], Sign::any), parse_number("--outlet", options.at[1], Sign::any)}};
+    if (!options.snap_m.empty()) request.snap_m = parse_number("--snap-m", options.snap_m, Sign::not_negative);
+    return request;
+}
+
 void add_experiment_options(CLI::App& app, ExperimentOptions& options) {
     app.add_option("EXPERIMENT", options.file, "experiment file (TOML)")->required();
     app.add_option("--set", options.set, "another value for a key, e.g. --set river.n=1.5 (may be repeated)")

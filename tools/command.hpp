@@ -36,6 +36,14 @@ void add_dem_options(CLI::App&, DemOptions&);
 io::ReadOptions read_options(const DemOptions&);
 study::MeasureOptions measure_options(const DemOptions&);
 
+/// The outlet of the one basin to be measured, shared by analyze and fit.
+struct OutletOptions {
+    std::vector<std::string> at;
+    std::string snap_m;
+};
+void add_outlet_options(CLI::App&, OutletOptions&);
+std::optional<study::OutletRequest> outlet_request(const OutletOptions&);
+
 /// An experiment file with what the command line changes in it, shared by simulate and run.
 struct ExperimentOptions {
     std::string file;

@@ -13,6 +13,7 @@ namespace {
 struct Options {
     CommonOptions common;
     DemOptions dem;
+    OutletOptions outlet;
     std::string target;
     std::string uplift, uplift_sd, n, deposition_g, theta_fixed, area_min, area_max;
     std::string method = "slope-area";
@@ -24,6 +25,7 @@ study::FitOptions fit_options(const Options& options) {
     fit.from = options.from == "raster" ? study::FitFrom::raster : study::FitFrom::nodes;
     fit.read = read_options(options.dem);
     fit.measure = measure_options(options.dem);
+    fit.outlet = outlet_request(options.outlet);
     const auto given = [](const char* name, const std::string& text, Sign sign) -> std::optional<double> {
         if (text.empty()) return std::nullopt;
         return parse_number(name, text, sign);
@@ -66,6 +68,7 @@ void add_fit(CLI::App& app) {
     command->add_option("--from", options->from, "of a simulation: its mesh nodes, or its raster measured like a DEM")
         ->check(CLI::IsMember({"nodes", "raster"}))
         ->capture_default_str();
+    add_outlet_options(*command, options->outlet);
     add_dem_options(*command, options->dem);
     add_common_options(*command, options->common, "fit");
     command->callback([options] { run(*options); });

@@ -37,7 +37,7 @@ MeasureOptions channels_from(double area_m2) {
 
 Json analyzed(const Raster& raster, const MeasureOptions& options, const std::filesystem::path& folder) {
     std::filesystem::create_directories(folder);
-    return Json::parse(analyze({raster, "drawn.tif", "", "", {}}, options, folder, {}));
+    return Json::parse(analyze({raster, "drawn.tif", "", "", {}, {}}, options, folder, {}));
 }
 
 /// The cells of a written raster are those of a drawing times `unit`; '#' is no data.

@@ -143,6 +143,18 @@ class CommandLine(unittest.TestCase):
         heads.write_text(json.dumps({"type": "FeatureCollection", "features": [place(10, 50)]}))
         self.refused("analyze", DEM, "--heads", heads, *out, saying="(10, 50)")
 
+    def test_an_outlet_is_looked_for_where_the_dem_has_data(self):
+        out = ["--out", self.here / "refused"]
+        for command in ("analyze", "fit"):
+            self.refused(command, DEM, "--outlet", "10", "50", *out, saying="beside the DEM")
+            self.refused(command, DEM, "--outlet", "10", *out, saying="--outlet")
+            self.refused(command, DEM, "--outlet", "here", "50", *out, saying="'here'")
+            self.refused(command, DEM, "--outlet", "-84.2", "36.3", "--snap-m", "-1", *out, saying="--snap-m")
+            self.refused(command, DEM, "--snap-m", "100", *out, saying="--outlet")
+        measured = self.here / "measured"
+        self.assertEqual(thalweg("analyze", DEM, "--out", measured, "--no-figures").returncode, 0)
+        self.refused("fit", measured, "--outlet", "-84.2", "36.3", *out, saying="--outlet")
+
     def test_results_that_exist_are_kept_unless_force_is_given(self):
         out = self.here / "out"
         self.assertEqual(thalweg("simulate", self.experiment, "--out", out, "--no-figures").returncode, 0)

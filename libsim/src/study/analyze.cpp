@@ -71,6 +71,11 @@ void note_crossing_drops(const ChannelEvidence& evidence, std::vector<std::strin
         *chosen, lasting ? fmt::format(", and agree from {:g} m2 on", *lasting) : ""));
 }
 
+Json outlet_json(const OutletReport& o) {
+    return {{"x", o.given.x},     {"y", o.given.y},       {"snapped_x", o.snapped.x}, {"snapped_y", o.snapped.y},
+            {"snap_m", o.snap_m}, {"moved_m", o.moved_m}, {"area_m2", o.area_m2},     {"complete", o.complete}};
+}
+
 const char* routing_name(Routing routing) {
     constexpr std::array names{"d8", "dinf", "mfd"};
     return names[static_cast<std::size_t>(routing)];
@@ -142,7 +147,10 @@ NamedRaster read_dem(const std::filesystem::path& path, const io::ReadOptions& o
 std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const std::filesystem::path& folder,
                     const Messages& messages) {
     messages.progress("routing flow and measuring");
-    const RasterMeasurement m = measure_raster(dem.raster, options);
+    RasterMeasurement m = measure_raster(dem.raster, options);
+    // A catchment that was cut out looks whole, whatever the data around it.
+    const bool cut = dem.outlet && !dem.outlet->complete;
+    for (BasinStatistics& basin : m.statistics.basins) basin.basin.complete &= !cut;
     std::vector<std::string> notes = dem.warnings;
     Json summary = terrain_json(input_of(dem, m), m.statistics, positions(dem.raster),
                                 conditioning_json(m.conditioning, options.conditioning), notes);
@@ -151,6 +159,7 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
                  "t needs two streams of the first order and two of higher ones", notes);
     note_crossing_drops(m.channel_evidence, notes);
     if (options.heads) summary["channels"]["heads"] = heads_json(*options.heads);
+    if (dem.outlet) summary["outlet"] = outlet_json(*dem.outlet);
     summary["measured_on"] = "raster";
     summary["routing"] = routing_name(options.routing);
     summary["slope_area"]["segment_drop_m"] = m.segment_drop_m;

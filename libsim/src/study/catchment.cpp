@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "study/cut_out.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/study/domain.hpp"
 
@@ -39,7 +40,7 @@ Raster crop(const Raster& whole, const Window& w) {
 }
 
 /// Smallest window around the cells labelled 0, with a margin of one cell where the raster has one.
-Window window_around(const Grid& grid, const std::vector<Index>& label) {
+Window window_around(const Grid& grid, std::span<const Index> label) {
     Index top = grid.rows, bottom = 0, left = grid.cols, right = 0;
     for (Index node = 0; node < grid.size(); ++node) {
         if (label[node] != 0) continue;
@@ -57,6 +58,16 @@ Window window_around(const Grid& grid, const std::vector<Index>& label) {
 
 }  // namespace
 
+Catchment cut_out(const Raster& dem, std::span<const Index> label, Index outlet) {
+    std::vector<double> masked(dem.values.size(), nan);
+    for (Index node = 0; node < dem.grid.size(); ++node) {
+        if (label[node] == 0) masked[node] = dem.values[node];
+    }
+    const Window window = window_around(dem.grid, label);
+    const Index row = dem.grid.row(outlet) - window.first_row, col = dem.grid.col(outlet) - window.first_col;
+    return {.raster = crop({dem.grid, dem.placement, std::move(masked)}, window), .outlet = row * window.cols + col};
+}
+
 Catchment largest_complete_catchment(const Raster& dem, const MeasureOptions& options) {
     const RasterMeasurement m = measure_raster(dem, options);
     const auto& basins = m.statistics.basins;
@@ -65,14 +76,7 @@ Catchment largest_complete_catchment(const Raster& dem, const MeasureOptions& op
             "the DEM holds no complete catchment as large as the channel threshold: every river is cut by its edge; "
             "use a larger DEM or a smaller channel area");
     }
-    std::vector<double> masked(dem.values.size(), nan);
-    for (Index node = 0; node < dem.grid.size(); ++node) {
-        if (m.statistics.basin_of[node] == 0) masked[node] = dem.values[node];
-    }
-    const Window window = window_around(dem.grid, m.statistics.basin_of);
-    const Index outlet = basins.front().basin.outlet;
-    const Index row = dem.grid.row(outlet) - window.first_row, col = dem.grid.col(outlet) - window.first_col;
-    return {.raster = crop({dem.grid, dem.placement, std::move(masked)}, window), .outlet = row * window.cols + col};
+    return cut_out(dem, m.statistics.basin_of, basins.front().basin.outlet);
 }
 
 }  // namespace thalweg::study

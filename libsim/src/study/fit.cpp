@@ -62,21 +62,33 @@ Target analyzed_target(const fs::path& folder) {
 }
 
 Target raster_target(const fs::path& file, const FitOptions& options, const Messages& messages) {
-    const NamedRaster dem = read_dem(file, options.read, messages);
+    NamedRaster dem = read_dem(file, options.read, messages);
+    MeasureOptions measure = options.measure;
+    if (options.outlet) dem = cut_to_outlet(dem, *options.outlet, measure, messages);
     messages.progress("routing flow and measuring");
-    return {.bins = measure_raster(dem.raster, options.measure).statistics.slope_area.bins,
+    return {.bins = measure_raster(dem.raster, measure).statistics.slope_area.bins,
             .measured_on = "raster",
             .steady_check = Json::object(),
             .warnings = dem.warnings};
 }
 
+void refuse_outlet(const fs::path& folder, const FitOptions& options) {
+    if (!options.outlet) return;
+    throw Error(
+        fmt::format("'{}' was measured before: --outlet applies to DEMs; give the DEM, or analyze it anew with "
+                    "--outlet",
+                    folder.string()));
+}
+
 Target target_of(const fs::path& path, const FitOptions& options, const Messages& messages) {
     switch (kind_of(path)) {
         case ResultKind::analyzed:
+            refuse_outlet(path, options);
             refuse_dem_options(path, options.read, options.measure);
             return analyzed_target(path);
         case ResultKind::simulated:
             if (options.from == FitFrom::nodes) {
+                refuse_outlet(path, options);
                 refuse_dem_options(path, options.read, options.measure);
                 return node_target(path);
             }

@@ -10,6 +10,7 @@
 
 #include "study/basin_statistics.hpp"
 #include "study/channel_choice.hpp"
+#include "study/conditioning.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/terrain/accumulate.hpp"
 #include "thalweg/terrain/d_infinity.hpp"
@@ -151,16 +152,6 @@ RoutedTerrain carved_terrain(const Raster& raster, const std::vector<Boundary>& 
     return t;
 }
 
-/// Directions on the raster as the user asked it to be conditioned, and the surface they fall on.
-FlowDirections conditioned_directions(const Raster& raster, const std::vector<Boundary>& boundary,
-                                      Conditioning conditioning, std::vector<double>& surface, Index& flat_cells) {
-    surface = conditioning == Conditioning::fill ? terrain::fill(raster.grid, raster.values, boundary) : raster.values;
-    FlowDirections directions = terrain::route(raster.grid, surface, boundary);
-    flat_cells = terrain::resolve_flats(raster.grid, surface, boundary, directions);
-    if (conditioning == Conditioning::carve) terrain::drain_lakes(raster.grid, surface, boundary, directions);
-    return directions;
-}
-
 void report_changes(const Raster& raster, const std::vector<double>& surface, ConditioningReport& report) {
     for (Index node = 0; node < raster.grid.size(); ++node) {
         const double change = std::abs(surface[node] - raster.values[node]);
@@ -197,13 +188,6 @@ std::vector<double> divided_area(const Grid& grid, std::span<const double> surfa
     return terrain::accumulate(flow, m.terrain.cell_area_m2);
 }
 
-std::vector<Boundary> boundary_of(const Raster& raster, const MeasureOptions& options) {
-    if (!options.catchment_outlet) return terrain::data_edge(raster.grid, raster.values);
-    std::vector<Boundary> boundary(raster.grid.size(), Boundary::interior);
-    boundary[*options.catchment_outlet] = Boundary::base_level;
-    return boundary;
-}
-
 }  // namespace
 
 double data_area(const Raster& raster) {
@@ -222,6 +206,14 @@ double default_channel_area(double area_m2) {
         if (std::abs(std::log(candidate / target)) < std::abs(std::log(best / target))) best = candidate;
     }
     return best;
+}
+
+double catchment_channel_area(const Raster& raster) {
+    constexpr double smallest_cells = 50;
+    const double area = data_area(raster);
+    const auto cells =
+        std::count_if(raster.values.begin(), raster.values.end(), [](double z) { return !std::isnan(z); });
+    return default_channel_area(std::max(area, 1000 * smallest_cells * area / static_cast<double>(cells)));
 }
 
 Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_m, const MeasureOptions& options,
@@ -297,8 +289,10 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
     RoutedTerrain carved = carved_terrain(raster, boundary, m.conditioning);
     m.carved_elevation_m = carved.elevation_m;
 
-    std::vector<double> surface;
-    m.directions = conditioned_directions(raster, boundary, options.conditioning, surface, m.conditioning.flat_cells);
+    Conditioned c = conditioned(raster, boundary, options.conditioning);
+    m.directions = std::move(c.directions);
+    m.conditioning.flat_cells = c.flat_cells;
+    std::vector<double> surface = std::move(c.surface_m);
     m.terrain.graph = terrain::flow_graph(raster.grid, surface, m.directions);
     m.terrain.cell_area_m2 = carved.cell_area_m2;
     m.terrain.drainage_area_m2 = terrain::accumulate(m.terrain.graph, m.terrain.cell_area_m2);

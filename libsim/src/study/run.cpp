@@ -45,15 +45,6 @@ Experiment fitted_experiment(const Experiment& study, const fs::path& dem, const
     return e;
 }
 
-/// 0.1 % of the catchment as for any DEM, but at least 50 cells: fewer are hillslope on most DEMs.
-double catchment_channel_area(const Raster& raster) {
-    constexpr double smallest_cells = 50;
-    const double area = data_area(raster);
-    const auto cells =
-        std::count_if(raster.values.begin(), raster.values.end(), [](double z) { return !std::isnan(z); });
-    return default_channel_area(std::max(area, 1000 * smallest_cells * area / static_cast<double>(cells)));
-}
-
 /// What the study's own experiment.toml says: the uplift that is simulated is the study's.
 Experiment resolved(Experiment e) {
     e.uplift.rate_m_per_yr = *e.study.uplift_m_per_yr;

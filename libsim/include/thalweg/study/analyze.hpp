@@ -9,6 +9,7 @@
 
 #include "thalweg/io/raster_file.hpp"
 #include "thalweg/study/measure.hpp"
+#include "thalweg/study/outlet.hpp"
 
 namespace thalweg::study {
 
@@ -36,10 +37,16 @@ struct NamedRaster {
     std::string crs_name;
     std::vector<std::string> warnings;
     std::optional<Origin> origin;
+    std::optional<OutletReport> outlet = {};  ///< of the catchment that it was cut down to
 };
 
 /// Reads a DEM and its checksum; warnings go to `messages`.
 NamedRaster read_dem(const std::filesystem::path&, const io::ReadOptions&, const Messages&);
+
+/// Cuts a DEM down to the catchment above an outlet, and sets the options to measure it whole: it leaves there, its rim
+/// is a divide, and where nothing else is asked for channels begin at `catchment_channel_area`. A warning tells where
+/// the edge of the data cuts it.
+NamedRaster cut_to_outlet(const NamedRaster&, const OutletRequest&, MeasureOptions&, const Messages&);
 
 /// Measures a DEM and writes summary.json, the GeoTIFFs, network.gpkg and the CSVs into an existing folder.
 /// Returns the text of summary.json.

@@ -21,6 +21,7 @@ struct FitOptions {
     FitFrom from = FitFrom::nodes;
     io::ReadOptions read;
     MeasureOptions measure;
+    std::optional<OutletRequest> outlet = {};  ///< of a DEM only what drains to it is fitted
 };
 
 /// Fits k and m to the slope–area curve of a DEM, an analyze folder or a simulate folder, and writes fit.json and

@@ -212,4 +212,8 @@ double data_area(const Raster&);
 /// The threshold of channels by default: 0.1 % of the area rounded to 1, 2 or 5 times a power of ten.
 double default_channel_area(double area_m2);
 
+/// The same for a raster that is one catchment, and at least 50 cells: small catchments have no valleys finer than
+/// that.
+double catchment_channel_area(const Raster&);
+
 }  // namespace thalweg::study

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <vector>
+
+#include "thalweg/study/measure.hpp"
+
+namespace thalweg::study {
+
+/// A DEM made to drain as the user asked.
+struct Conditioned {
+    std::vector<double> surface_m;  ///< from which the directions were taken; cuts through obstacles are not in it
+    FlowDirections directions;
+    Index flat_cells = 0;  ///< that needed a direction by the flat rule
+};
+Conditioned conditioned(const Raster&, const std::vector<Boundary>&, Conditioning);
+
+/// Where water may leave: the edge of the data, or the one outlet of a catchment.
+std::vector<Boundary> boundary_of(const Raster&, const MeasureOptions&);
+
+}  // namespace thalweg::study
