@@ -22,6 +22,7 @@ constexpr double newton_tolerance = 1e-6;   // of the right-hand side of one ite
 constexpr double last_newton_step = 1e-8;   // of the relief; the error after it is of the order of its square
 constexpr double last_nearness = 1e-4;      // of the room left below the critical slope; likewise
 constexpr double rough_newton_step = 0.05;  // of the relief; on the way
+constexpr int patience = 20;  // iterations of a solve after which coarse levels are made anew; they cost about as much
 constexpr int most_newton_iterations = 300;
 constexpr int most_halvings = 60;
 constexpr double stretch = 10;  // of the time step, from one stage of the way to the next
@@ -202,11 +203,24 @@ class HillslopeSolver::Steps {
                 }
             }
         });
-        multigrid_.compute(matrix_);
     }
 
-    void solve(double tolerance, HillslopeReport& report) {
-        const LinearSolution solution = conjugate_gradients(matrix_, multigrid_, right_, tolerance, change_);
+    /// Coarse levels for `matrix_`: those there are, made for another one of this step or for linear creep, as long as
+    /// they serve. No result hangs on which, but by the tolerance of the solve; and which does not hang on other steps.
+    void keep_or_renew_levels() {
+        if (levels_serve_) {
+            levels_->keep_for(matrix_);
+        } else {
+            levels_ = &multigrid_;
+            levels_->compute(matrix_);
+        }
+    }
+
+    void solve(double tolerance, HillslopeReport& report) { solve(matrix_, tolerance, report); }
+
+    void solve(const SparseMatrix& matrix, double tolerance, HillslopeReport& report) {
+        const LinearSolution solution = conjugate_gradients(matrix, *levels_, right_, tolerance, change_);
+        levels_serve_ = solution.iterations <= patience;
         report.linear_iterations += solution.iterations;
         report.converged = report.converged && solution.converged;
         ++report.newton_iterations;
@@ -214,7 +228,10 @@ class HillslopeSolver::Steps {
 
     void linear_step(std::vector<double>& heights, HillslopeReport& report) {
         critical_slope_ = no_limit;
-        if (assembled_for_yr_ != dt_yr_) assemble(heights);
+        if (assembled_for_yr_ != dt_yr_) {
+            assemble(heights);
+            multigrid_.compute(matrix_);
+        }
         assembled_for_yr_ = dt_yr_;
         residual(heights);
         solve(linear_tolerance, report);
@@ -236,9 +253,23 @@ class HillslopeSolver::Steps {
         critical_slope_ = hillslope_.critical_slope;
         for (int stage = stages; stage >= 0 && report.converged; --stage) {
             dt_yr_ = dt_yr * std::pow(stretch, stage);
+            levels_serve_ = levels_serve_ && stage == stages;
             newton(heights, stage == 0 ? last_newton_step : rough_newton_step, report);
         }
         dt_yr_ = dt_yr;
+    }
+
+    /// That of linear creep over the step, and its levels: a function of the step's length alone.
+    const SparseMatrix& linear_matrix(const std::vector<double>& heights) {
+        levels_ = &start_levels_;
+        if (start_for_yr_ != dt_yr_) {
+            assemble(heights);
+            start_matrix_ = matrix_;
+            levels_->compute(start_matrix_);
+            start_for_yr_ = dt_yr_;
+        }
+        levels_->keep_for(start_matrix_);
+        return start_matrix_;
     }
 
     /// The number of times the step had to be stretched.
@@ -250,8 +281,14 @@ class HillslopeSolver::Steps {
         while (true) {
             heights = before_;
             residual(heights);
-            assemble(heights);
-            solve(newton_tolerance, report);
+            if (stage == 0) {
+                solve(linear_matrix(heights), newton_tolerance, report);
+            } else {
+                assemble(heights);
+                levels_ = &multigrid_;
+                levels_->compute(matrix_);
+                solve(newton_tolerance, report);
+            }
             move(heights, 1);
             if (steepest(heights) < room_to_start * hillslope_.critical_slope) return stage;
             if (stage == most_stages) break;
@@ -272,6 +309,7 @@ class HillslopeSolver::Steps {
         while (report.newton_iterations < most_newton_iterations) {
             residual(heights);
             assemble(heights);
+            keep_or_renew_levels();
             solve(newton_tolerance, report);
             const double share = descend(heights);
             if (share < 1 || change_.cwiseAbs().maxCoeff() > last_step * relief(heights)) continue;
@@ -389,6 +427,11 @@ class HillslopeSolver::Steps {
     std::vector<double> area_, before_, start_;
     SparseMatrix matrix_;
     Multigrid multigrid_;
+    SparseMatrix start_matrix_;  // of linear creep over a step of start_for_yr_, from which steps start below Sc
+    Multigrid start_levels_;
+    double start_for_yr_ = 0;
+    Multigrid* levels_ = &multigrid_;  // those last used
+    bool levels_serve_ = false;        // the last solve with them was quick
     Vector right_, change_;
 };
 

@@ -88,28 +88,57 @@ SparseMatrix smoothed_prolongation(const SparseMatrix& a, const std::vector<int>
     return smoothed + constant;
 }
 
-/// One Gauss–Seidel step at node i.
-void relax(const SparseMatrix& a, const Vector& right, int i, Vector& x) {
-    const int* column = a.innerIndexPtr();
-    const double* value = a.valuePtr();
-    double sum = right[i];
-    double diagonal = 1;
-    for (int at = a.outerIndexPtr()[i]; at < a.outerIndexPtr()[i + 1]; ++at) {
-        if (column[at] == i) {
-            diagonal = value[at];
-        } else {
-            sum -= value[at] * x[column[at]];
-        }
+/// Where each row holds its diagonal.
+std::vector<int> middles(const SparseMatrix& a) {
+    std::vector<int> middle(a.rows());
+    for (int i = 0; i < a.rows(); ++i) {
+        int at = a.outerIndexPtr()[i];
+        while (a.innerIndexPtr()[at] != i) ++at;
+        middle[i] = at;
     }
-    x[i] = sum / diagonal;
+    return middle;
 }
 
-void sweep_up(const SparseMatrix& a, const Vector& right, Vector& x) {
-    for (int i = 0; i < a.rows(); ++i) relax(a, right, i, x);
+/// A matrix with its rows cut at the diagonal.
+struct Rows {
+    const int* column;
+    const double* value;
+    const int* start;
+    const int* middle;
+    int count;
+
+    Rows(const SparseMatrix& a, const std::vector<int>& middles)
+        : column(a.innerIndexPtr()),
+          value(a.valuePtr()),
+          start(a.outerIndexPtr()),
+          middle(middles.data()),
+          count(static_cast<int>(a.rows())) {}
+
+    double sum(int first, int last, const Vector& x) const {
+        double sum = 0;
+        for (int at = first; at < last; ++at) sum += value[at] * x[column[at]];
+        return sum;
+    }
+    double below(int i, const Vector& x) const { return sum(start[i], middle[i], x); }
+    double above(int i, const Vector& x) const { return sum(middle[i] + 1, start[i + 1], x); }
+};
+
+/// A Gauss–Seidel sweep upward from x = 0, of which no node sees more than the part below it.
+void sweep_up_from_zero(const Rows& a, const Vector& right, Vector& x) {
+    x.resize(a.count);
+    for (int i = 0; i < a.count; ++i) x[i] = (right[i] - a.below(i, x)) / a.value[a.middle[i]];
 }
 
-void sweep_down(const SparseMatrix& a, const Vector& right, Vector& x) {
-    for (int i = static_cast<int>(a.rows()) - 1; i >= 0; --i) relax(a, right, i, x);
+/// What that sweep leaves: right − A·x, in which all but the part above each node has cancelled.
+void rest_after_sweep_up(const Rows& a, const Vector& x, Vector& rest) {
+    rest.resize(a.count);
+    parallel_for(0, static_cast<unsigned>(a.count), [&](unsigned first, unsigned last) {
+        for (unsigned i = first; i < last; ++i) rest[i] = -a.above(static_cast<int>(i), x);
+    });
+}
+
+void sweep_down(const Rows& a, const Vector& right, Vector& x) {
+    for (int i = a.count - 1; i >= 0; --i) x[i] = (right[i] - a.below(i, x) - a.above(i, x)) / a.value[a.middle[i]];
 }
 
 /// product = A·x, rows on several threads.
@@ -134,6 +163,7 @@ void Multigrid::compute(const SparseMatrix& finest) {
     levels_.assign(1, {});
     while (levels_.size() < most_levels) {
         const SparseMatrix& fine = matrix(levels_.size() - 1);
+        levels_.back().middle = middles(fine);
         if (fine.rows() <= small_enough_to_factor) break;
         int count = 0;
         const std::vector<int> of = aggregate(fine, count);
@@ -146,6 +176,7 @@ void Multigrid::compute(const SparseMatrix& finest) {
         levels_.back().own = std::move(coarse);
     }
     const SparseMatrix& last = matrix(levels_.size() - 1);
+    if (levels_.back().middle.empty()) levels_.back().middle = middles(last);
     solves_coarsest_ = last.rows() <= small_enough_to_factor;
     if (solves_coarsest_) coarsest_.compute(Eigen::SparseMatrix<double>(last));
     solves_coarsest_ = solves_coarsest_ && coarsest_.info() == Eigen::Success;
@@ -156,25 +187,24 @@ void Multigrid::apply(const Vector& residual, Vector& correction) {
     const std::size_t last = levels_.size() - 1;
     for (std::size_t l = 0; l < last; ++l) {
         Level& level = levels_[l];
-        level.unknown.setZero(matrix(l).rows());
-        sweep_up(matrix(l), level.right, level.unknown);
-        multiply(matrix(l), level.unknown, level.rest);
-        level.rest = level.right - level.rest;
+        const Rows rows(matrix(l), level.middle);
+        sweep_up_from_zero(rows, level.right, level.unknown);
+        rest_after_sweep_up(rows, level.unknown, level.rest);
         multiply(level.restriction, level.rest, levels_[l + 1].right);
     }
     Level& bottom = levels_[last];
     if (solves_coarsest_) {
         bottom.unknown = coarsest_.solve(bottom.right);
     } else {
-        bottom.unknown.setZero(matrix(last).rows());
-        sweep_up(matrix(last), bottom.right, bottom.unknown);
-        sweep_down(matrix(last), bottom.right, bottom.unknown);
+        const Rows rows(matrix(last), bottom.middle);
+        sweep_up_from_zero(rows, bottom.right, bottom.unknown);
+        sweep_down(rows, bottom.right, bottom.unknown);
     }
     for (std::size_t l = last; l-- > 0;) {
         Level& level = levels_[l];
         multiply(level.prolongation, levels_[l + 1].unknown, level.rest);
         level.unknown += level.rest;
-        sweep_down(matrix(l), level.right, level.unknown);
+        sweep_down(Rows(matrix(l), level.middle), level.right, level.unknown);
     }
     correction = levels_[0].unknown;
 }
