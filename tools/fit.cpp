@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/study/fit.hpp"
 
+#include <cstdint>
 #include <memory>
+#include <utility>
 
 #include "command.hpp"
 #include "thalweg/core/error.hpp"
+#include "thalweg/study/fit_growth.hpp"
 
 namespace thalweg::tools {
 namespace {
@@ -18,6 +21,7 @@ struct Options {
     std::string uplift, uplift_sd, n, deposition_g, theta_fixed, area_min, area_max;
     std::string method = "slope-area";
     std::string from = "nodes";
+    std::string seed;
 };
 
 study::FitOptions fit_options(const Options& options) {
@@ -42,7 +46,36 @@ study::FitOptions fit_options(const Options& options) {
     return fit;
 }
 
+/// Growth asks for none of what the erosion law is fitted by.
+void refuse_options_of_erosion(const Options& options) {
+    for (const auto& [name, text] : {std::pair{"--uplift-m-per-yr", options.uplift},
+                                     {"--uplift-sd", options.uplift_sd},
+                                     {"--n", options.n},
+                                     {"--deposition-g", options.deposition_g},
+                                     {"--area-min-m2", options.area_min},
+                                     {"--area-max-m2", options.area_max},
+                                     {"--theta-fixed", options.theta_fixed}}) {
+        if (!text.empty())
+            throw Error(std::string(name) + " says something of erosion: --method growth has no use for it");
+    }
+}
+
+void run_growth(const Options& options) {
+    refuse_options_of_erosion(options);
+    study::GrowthFitOptions fit{.read = read_options(options.dem),
+                                .measure = measure_options(options.dem),
+                                .outlet = outlet_request(options.outlet)};
+    if (!options.seed.empty()) {
+        fit.seed = static_cast<std::uint64_t>(parse_number("--seed", options.seed, Sign::not_negative));
+    }
+    run_into_folder(options.common, "fit", [&](const auto& folder, const study::Messages& m) {
+        return study::fit_growth(options.target, fit, folder, m);
+    });
+}
+
 void run(const Options& options) {
+    if (options.method == "growth") return run_growth(options);
+    if (!options.seed.empty()) throw Error("--seed is for --method growth: nothing else here is random");
     const study::FitOptions fit = fit_options(options);
     run_into_folder(options.common, "fit", [&](const auto& folder, const study::Messages& m) {
         return study::fit(options.target, fit, folder, m).json;
@@ -52,7 +85,8 @@ void run(const Options& options) {
 }  // namespace
 
 void add_fit(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("fit", "Fit k and m to the slope-area curve of a DEM or a simulation");
+    CLI::App* command = app.add_subcommand(
+        "fit", "Fit k and m to the slope-area curve of a DEM or a simulation, or the dials of network growth");
     auto options = std::make_shared<Options>();
     command->add_option("TARGET", options->target, "a DEM, or the folder of an analyze or simulate run")->required();
     command->add_option("--uplift-m-per-yr", options->uplift,
@@ -61,7 +95,9 @@ void add_fit(CLI::App& app) {
     command->add_option("--n", options->n, "slope exponent [default: 1]");
     command->add_option("--deposition-g", options->deposition_g,
                         "G of rivers that lay down sediment: slopes tell k/((1 + G)*u) [default: 0]");
-    command->add_option("--method", options->method, "what is matched")->check(CLI::IsMember({"slope-area"}));
+    command->add_option("--method", options->method, "what is matched")
+        ->check(CLI::IsMember({"slope-area", "growth"}))
+        ->capture_default_str();
     command->add_option("--area-min-m2", options->area_min, "smallest drainage area in the fit");
     command->add_option("--area-max-m2", options->area_max, "largest drainage area in the fit");
     command->add_option("--theta-fixed", options->theta_fixed, "hold the concavity m/n at this value");
@@ -69,6 +105,7 @@ void add_fit(CLI::App& app) {
         ->check(CLI::IsMember({"nodes", "raster"}))
         ->capture_default_str();
     add_outlet_options(*command, options->outlet);
+    command->add_option("--seed", options->seed, "of growth: another seed [default: 1]");
     add_dem_options(*command, options->dem);
     add_common_options(*command, options->common, "fit");
     command->callback([options] { run(*options); });

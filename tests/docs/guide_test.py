@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything the program writes or takes is defined in the user guide: guide_test.py THALWEG SOURCE_FOLDER
 
-Runs the embedded study and looks for each file, JSON key, CSV column, GeoPackage column, option and experiment key
+Runs the embedded study, a fit of growth, and looks for each file, JSON key, CSV column, GeoPackage column, option and experiment key
 between backticks in docs/guide.md; and for the experiment keys the other way round.
 """
 import json
@@ -83,7 +83,10 @@ def main():
         study = Path(folder) / "study"
         subprocess.run([THALWEG, "run", SOURCE / "validation" / "jacksboro.toml", "--out", study, "--no-figures",
                         "--quiet"], check=True)
-        words = {**written_words(study), **taken_words()}
+        growth = Path(folder) / "growth"
+        subprocess.run([THALWEG, "fit", SOURCE / "validation" / "data" / "jacksboro.tif", "--method", "growth", "--out",
+                        growth, "--no-figures", "--quiet"], check=True)
+        words = {**written_words(study), **written_words(growth), **taken_words()}
     missing = {word: where for word, where in words.items() if word not in guide}
     for word, where in sorted(missing.items()):
         print(f"docs/guide.md does not define {word} ({where})")

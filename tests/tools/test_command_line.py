@@ -255,6 +255,19 @@ class CommandLine(unittest.TestCase):
         unsteady = thalweg("simulate", self.experiment, "--out", self.here / "s", "--no-figures", "--quiet")
         self.assertIn("not steady after 10 steps", unsteady.stderr)
 
+    def test_growth_is_fitted_to_a_dem_and_takes_nothing_of_erosion(self):
+        result = thalweg("fit", DEM, "--method", "growth", "--seed", "3", "--out", self.here / "growth", "--json",
+                         "--no-figures")
+        self.assertEqual(result.returncode, 0, result.stderr)
+        fit = json.loads(result.stdout)
+        self.assertEqual(fit["method"], "growth")
+        self.assertIsNone(fit["k"])
+        self.assertGreater(fit["growth"]["channel_maintenance_m"]["estimate"], 0)
+        self.assertIn("seed = 3", (self.here / "growth" / "growth.toml").read_text())
+        self.refused("fit", DEM, "--method", "growth", "--n", "2", "--out", self.here / "no", saying="--n")
+        self.refused("fit", DEM, "--seed", "2", "--out", self.here / "no", saying="--seed")
+        self.refused("fit", DEM, "--method", "growth", "--seed", "-2", "--out", self.here / "no", saying="--seed")
+
     def test_a_fit_without_uplift_tells_what_slopes_alone_can_tell(self):
         result = thalweg("fit", DEM, "--out", self.here / "fit", "--json", "--no-figures")
         self.assertEqual(result.returncode, 0, result.stderr)

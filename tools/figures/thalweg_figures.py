@@ -40,6 +40,10 @@ def figures_of_fit(folder):
     import curves, style
     from data import read_csv, require_json
     fit, table = require_json(folder, "fit.json"), read_csv(folder, "fit.csv")
+    if fit.get("method") == "growth":
+        import growth
+        yield "growth", growth.check(fit)
+        return
     side = curves.Side("target", style.LOOK["real"])
     side.bins = tuple(table.get(name, ()) for name in ("area_m2", "slope", "slope_se"))
     yield "slope_area", curves.slope_area(side, curves.fitted_line(fit, table))

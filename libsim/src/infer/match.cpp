@@ -6,7 +6,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/parallel.hpp"
@@ -38,13 +37,13 @@ Belief uniform_belief(std::span<const std::array<double, 2>> box) {
     return belief;
 }
 
-/// What came of one round: a row for each outcome that has all statistics.
+/// What came of one round: a row for each outcome.
 struct Round {
     Matrix parameters, statistics;
 };
 
-Round draw_round(const RandomModel& model, std::span<const double> target, const MatchOptions& options,
-                 std::span<const std::array<double, 2>> box, Index round) {
+Round draw_round(const RandomModel& model, const MatchOptions& options, std::span<const std::array<double, 2>> box,
+                 Index round) {
     std::vector<std::vector<double>> parameters(options.draws), statistics(options.draws);
     const auto draw_one = [&](Index draw) {
         const std::uint64_t number = std::uint64_t{round} * options.draws + draw;
@@ -52,9 +51,7 @@ Round draw_round(const RandomModel& model, std::span<const double> target, const
             const double uniform = uniform_at(options.seed, parameter_draws, number * box.size() + i);
             parameters[draw].push_back(box[i][0] + uniform * (box[i][1] - box[i][0]));
         }
-        for (std::size_t i = 0; const double value : model(parameters[draw], options.seed + number)) {
-            if (!std::isnan(target[i++])) statistics[draw].push_back(value);
-        }
+        statistics[draw] = model(parameters[draw], options.seed + number);
     };
     parallel_for(
         0, options.draws,
@@ -62,19 +59,34 @@ Round draw_round(const RandomModel& model, std::span<const double> target, const
             for (Index draw = first; draw < last; ++draw) draw_one(draw);
         },
         1);
-    std::vector<Index> whole;
+    Round drawn{Matrix(options.draws, static_cast<Eigen::Index>(box.size())),
+                Matrix(options.draws, static_cast<Eigen::Index>(statistics.front().size()))};
     for (Index draw = 0; draw < options.draws; ++draw) {
-        if (std::ranges::none_of(statistics[draw], [](double s) { return std::isnan(s); })) whole.push_back(draw);
+        drawn.parameters.row(draw) = Eigen::Map<const Vector>(parameters[draw].data(), drawn.parameters.cols());
+        drawn.statistics.row(draw) = Eigen::Map<const Vector>(statistics[draw].data(), drawn.statistics.cols());
     }
-    const auto rows = static_cast<Eigen::Index>(whole.size());
-    const auto columns = static_cast<Eigen::Index>(statistics.front().size());
-    Round result{Matrix(rows, static_cast<Eigen::Index>(box.size())), Matrix(rows, columns)};
-    for (Eigen::Index row = 0; row < rows; ++row) {
-        const Index draw = whole[static_cast<std::size_t>(row)];
-        result.parameters.row(row) = Eigen::Map<const Vector>(parameters[draw].data(), result.parameters.cols());
-        result.statistics.row(row) = Eigen::Map<const Vector>(statistics[draw].data(), columns);
+    return drawn;
+}
+
+/// The statistics that have a target and that most outcomes have.
+std::vector<Eigen::Index> statistics_in_use(const Round& drawn, std::span<const double> target) {
+    constexpr double most = 0.9;
+    std::vector<Eigen::Index> used;
+    for (Eigen::Index k = 0; k < drawn.statistics.cols(); ++k) {
+        const auto known = (drawn.statistics.col(k).array() == drawn.statistics.col(k).array()).count();
+        const bool is_usual = static_cast<double>(known) >= most * static_cast<double>(drawn.statistics.rows());
+        if (is_usual && !std::isnan(target[static_cast<std::size_t>(k)])) used.push_back(k);
     }
-    return result;
+    return used;
+}
+
+/// The outcomes that have all statistics in use, and those alone.
+Round whole_outcomes(const Round& drawn, const std::vector<Eigen::Index>& used) {
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index row = 0; row < drawn.statistics.rows(); ++row) {
+        if (!drawn.statistics(row, used).hasNaN()) rows.push_back(row);
+    }
+    return {drawn.parameters(rows, Eigen::all), drawn.statistics(rows, used)};
 }
 
 /// Expected statistics near the middle of a box: a constant, slopes and products of the parameters.
@@ -193,18 +205,19 @@ Match result_of(const Belief& after, const Belief& before, std::span<const std::
 }  // namespace
 
 Match match(const RandomModel& model, std::span<const double> target, const MatchOptions& options) {
-    std::vector<double> known;
-    std::ranges::copy_if(target, std::back_inserter(known), [](double value) { return !std::isnan(value); });
-    const Vector wanted = Eigen::Map<const Vector>(known.data(), static_cast<Eigen::Index>(known.size()));
+    const Vector measured = Eigen::Map<const Vector>(target.data(), static_cast<Eigen::Index>(target.size()));
     const Belief before = uniform_belief(options.ranges);
-    if (known.empty()) return result_of(before, before, options.ranges);
     Belief belief = before;
     std::vector<std::array<double, 2>> box = options.ranges;
+    std::vector<Eigen::Index> used;
     Index outcomes = 0;
     for (Index round = 0; round < options.rounds; ++round) {
-        const Round drawn = draw_round(model, target, options, box, round);
+        const Round all = draw_round(model, options, box, round);
+        if (round == 0) used = statistics_in_use(all, target);
+        if (used.empty()) break;
+        const Round drawn = whole_outcomes(all, used);
         check_enough(drawn, options.draws);
-        belief = updated(before, Response(drawn), wanted, box);
+        belief = updated(before, Response(drawn), measured(used), box);
         box = box_about(belief, options.ranges);
         outcomes = static_cast<Index>(drawn.parameters.rows());
     }

@@ -31,11 +31,12 @@ struct MatchedDial {
     double measured;
 };
 
-/// The measures in the order of the dials that they tell of.
+/// The measures in the order of the dials that they tell of, then link lengths, which hang on several.
 std::vector<double> telling_measures(const channel::GrowthMeasures& m) {
-    return {m.junction_places.mean.value,   m.junction_places.delta.value,   m.headward_reach.mean.value,
-            m.headward_reach.delta.value,   m.sidewall_angle_deg.mean.value, m.sidewall_angle_deg.delta.value,
-            m.side_choices.obtuse[0].value, m.side_choices.opposite[1].value};
+    return {m.junction_places.mean.value,     m.junction_places.delta.value,    m.headward_reach.mean.value,
+            m.headward_reach.delta.value,     m.sidewall_angle_deg.mean.value,  m.sidewall_angle_deg.delta.value,
+            m.side_choices.obtuse[0].value,   m.side_choices.opposite[1].value, std::log(m.links.exterior.mean_m),
+            std::log(m.links.interior.mean_m)};
 }
 
 std::vector<MatchedDial> matched_dials(const channel::GrowthMeasures& m) {

@@ -40,7 +40,8 @@ struct Match {
 /// inference; Gouriéroux, Monfort & Renault 1993; Wood 2010). The errors include the chance in the one outcome that was
 /// measured.
 ///
-/// Statistics whose target is NaN are left out; so are outcomes that lack one of the others. Same bytes for any number
+/// Statistics whose target is NaN, or that a tenth of the first round's outcomes lack, are left out; so are outcomes
+/// that lack one of the others. Same bytes for any number
 /// of threads. Throws Error where a round has fewer outcomes with all of them than one and a half times the
 /// regression's terms, (P + 1)(P + 2)/2 for P parameters.
 Match match(const RandomModel&, std::span<const double> target, const MatchOptions&);
