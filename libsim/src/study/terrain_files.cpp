@@ -47,7 +47,13 @@ Json write_surface(const fs::path& folder, const char* name, MeshFile file, Tria
     return described;
 }
 
-/// `own` makes the surface of the simulation's own nodes.
+/// A surface and where its zero lies on the map.
+struct PlacedSurface {
+    TriangleSurface surface;
+    LocalMetres local;
+};
+
+/// `own` makes the surface of the simulation's own nodes, given where the heightfield's zero lies.
 template <class Own>
 Json write_files(const Heightfield& h, const Domain& domain, const Experiment& e, const fs::path& folder, Own own) {
     Json keys = Json::object();
@@ -62,8 +68,9 @@ Json write_files(const Heightfield& h, const Domain& domain, const Experiment& e
     const LocalMetres local = local_metres(h.elevation);
     keys["meshes"] = Json::array();
     if (e.output.mesh_file) {
-        keys["meshes"].push_back(
-            write_surface(folder, "mesh", *e.output.mesh_file, own(local), local, e, domain.extent_m));
+        PlacedSurface nodes = own(local);
+        keys["meshes"].push_back(write_surface(folder, "mesh", *e.output.mesh_file, std::move(nodes.surface),
+                                               nodes.local, e, domain.extent_m));
     }
     if (e.output.heightfield_mesh_file) {
         TriangleSurface cells = surface::triangle_surface(h.elevation.grid, local.centers, h.elevation.values);
@@ -89,8 +96,10 @@ void check_terrain_files(const Experiment& e) {
 
 Json write_terrain_files(const Grid& grid, const Domain& domain, const Heightfield& h, const Finished& f,
                          const Experiment& e, const fs::path& folder) {
-    return write_files(h, domain, e, folder, [&](const LocalMetres& local) {
-        return surface::triangle_surface(grid, local.centers, f.terrain.elevation_m);
+    return write_files(h, domain, e, folder, [&](const LocalMetres&) {
+        // Its own cells, which the heightfield's need not be (output.resolution).
+        LocalMetres local = local_metres(Raster{grid, domain.placement, f.terrain.elevation_m});
+        return PlacedSurface{surface::triangle_surface(grid, local.centers, f.terrain.elevation_m), local};
     });
 }
 
@@ -100,7 +109,7 @@ Json write_terrain_files(const Mesh& mesh, const Domain& domain, const Heightfie
         TriangleSurface surface = surface::triangle_surface(mesh, f.terrain.elevation_m);
         for (double& x : surface.x) x -= local.origin.x * domain.unit_m;
         for (double& y : surface.y) y -= local.origin.y * domain.unit_m;
-        return surface;
+        return PlacedSurface{surface, local};
     });
 }
 
