@@ -77,6 +77,7 @@ void run_to_file(const FileOptions&, const std::function<std::string(const study
 
 void add_analyze(CLI::App&);
 void add_simulate(CLI::App&);
+void add_grow(CLI::App&);
 void add_fit(CLI::App&);
 void add_compare(CLI::App&);
 void add_run(CLI::App&);

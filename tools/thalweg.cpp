@@ -59,9 +59,9 @@ int parse_and_run(int argc, char** argv) {
     app.set_version_flag("--version", "thalweg " + thalweg::study::versions().thalweg);
     app.require_subcommand(1);
     app.failure_message([](const CLI::App*, const CLI::Error& error) { return std::string(error.what()); });
-    for (const auto add : {thalweg::tools::add_analyze, thalweg::tools::add_simulate, thalweg::tools::add_fit,
-                           thalweg::tools::add_compare, thalweg::tools::add_run, thalweg::tools::add_fetch,
-                           thalweg::tools::add_render, thalweg::tools::add_version}) {
+    for (const auto add : {thalweg::tools::add_analyze, thalweg::tools::add_simulate, thalweg::tools::add_grow,
+                           thalweg::tools::add_fit, thalweg::tools::add_compare, thalweg::tools::add_run,
+                           thalweg::tools::add_fetch, thalweg::tools::add_render, thalweg::tools::add_version}) {
         add(app);
     }
     refuse_unknown_command(app, argc, argv);

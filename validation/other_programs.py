@@ -37,8 +37,7 @@ step_yr = 100000
 max_steps = 20
 convergence = 0
 [output]
-resolution = 150
-geotiff = "cog"
+{resolution}geotiff = "cog"
 heightmap = "png"
 mesh_file = "{mesh}"
 heightfield_mesh_file = "{heightfield}"
@@ -107,7 +106,8 @@ class OtherPrograms(unittest.TestCase):
         for name, (domain, mesh, heightfield, _) in CASES.items():
             experiment = os.path.join(cls.temporary.name, f"{name}.toml")
             with open(experiment, "w", encoding="utf-8") as stream:
-                stream.write(EXPERIMENT.format(domain=domain, mesh=mesh, heightfield=heightfield))
+                stream.write(EXPERIMENT.format(domain=domain, mesh=mesh, heightfield=heightfield,
+                                               resolution="" if name == "raster" else "resolution = 150\n"))
             folder = os.path.join(cls.temporary.name, name)
             subprocess.run([THALWEG, "simulate", experiment, "--out", folder, "--quiet", "--no-figures"], check=True)
             with open(os.path.join(folder, "summary.json"), encoding="utf-8") as stream:

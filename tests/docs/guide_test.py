@@ -61,6 +61,16 @@ def written_words(folder):
     return seen
 
 
+BASIN = """[basin]
+outline = [[0, 0], [4000, 500], [3000, 5000], [-1000, 4000]]
+trunk = [[0, 0], [1500, 3500]]
+[growth]
+channel_maintenance_m = 400
+[output]
+resolution = 100
+"""
+
+
 def help_of(*command):
     return subprocess.run([THALWEG, *command, "--help"], capture_output=True, text=True, check=True).stdout
 

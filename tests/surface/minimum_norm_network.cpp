@@ -253,3 +253,35 @@ TEST_CASE("What is no surface is refused with a sentence") {
     CHECK_NOTHROW(minimum_norm_network(square().mesh()));
     CHECK(minimum_norm_network(TensionMesh{}).edges.empty());
 }
+
+TEST_CASE("Given gradients stay, and the others are the best beside them") {
+    const support::TensionSurface s = support::rough_surface(support::random_star(9, 4), 150, 4);
+    const auto count = static_cast<Index>(s.mesh().x.size());
+    std::vector<double> given_x(count, std::nan("")), given_y(count, std::nan(""));
+    for (Index i = 0; i < count; i += 3) {
+        given_x[i] = 0.3 - 0.01 * i;
+        given_y[i] = 0.02 * i;
+    }
+    surface::TensionMesh mesh = s.mesh();
+    mesh.given_slope_x = given_x;
+    mesh.given_slope_y = given_y;
+    const auto network = surface::minimum_norm_network(mesh);
+    const double least = surface::network_energy(mesh, network, network.slope_x, network.slope_y);
+    for (Index i = 0; i < count; ++i) {
+        if (i % 3 == 0) {
+            CHECK(network.slope_x[i] == given_x[i]);
+            CHECK(network.slope_y[i] == given_y[i]);
+            continue;
+        }
+        for (const double change : {-1e-3, 1e-3}) {  // any other gradient costs more
+            auto x = network.slope_x, y = network.slope_y;
+            x[i] += change;
+            CHECK(surface::network_energy(mesh, network, x, y) > least);
+            x[i] -= change;
+            y[i] += change;
+            CHECK(surface::network_energy(mesh, network, x, y) > least);
+        }
+    }
+    mesh.given_slope_y = std::span(given_y).first(3);
+    CHECK_THROWS_WITH(surface::minimum_norm_network(mesh), Catch::Contains("one for each, or none"));
+}

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures and report of the thalweg commands: thalweg_figures.py analyze|simulate|fit|compare|report|study DIR
+"""Figures and report of the thalweg commands: thalweg_figures.py analyze|simulate|grow|fit|compare|report|study DIR
 
 Reads what a command wrote into DIR and adds DIR/figures/*.png; for `report`, DIR/report.html from the folders of a whole
 study; for `study`, that report and the figures of its main steps at once, on two processors. Bytes depend on the
@@ -36,6 +36,15 @@ def figures_of_simulate(folder):
     yield "history", curves.history(read_csv(folder, "history.csv"))
 
 
+def figures_of_grow(folder):
+    import curves, maps, sides
+    side = sides.from_folder(folder, "grown", "synthetic")
+    yield "map", maps.single(_file(folder, "elevation.tif"), _file(folder, "network.gpkg"))[0]
+    yield "hypsometry", curves.hypsometry([side])
+    yield "slope_area", curves.slope_area(side, regression=curves.summary_line(side))
+    yield "horton", curves.horton([side])
+
+
 def figures_of_fit(folder):
     import curves, style
     from data import read_csv, require_json
@@ -60,7 +69,7 @@ def figures_of_compare(folder):
     yield "horton", curves.horton(pair)
 
 
-FIGURES = {"analyze": figures_of_analyze, "simulate": figures_of_simulate, "fit": figures_of_fit,
+FIGURES = {"analyze": figures_of_analyze, "simulate": figures_of_simulate, "grow": figures_of_grow, "fit": figures_of_fit,
            "compare": figures_of_compare}
 
 

@@ -23,14 +23,8 @@ std::vector<double> channel_elevations(const Network& network, const Flint& flin
     return elevation;
 }
 
-/// What the valley sides around a ridge vertex say of its height.
-struct Bounds {
-    double allowed = std::numeric_limits<double>::infinity();  ///< the lowest that a sidewall reaches
-    double least = -std::numeric_limits<double>::infinity();   ///< above all its channels
-};
-
 void bound_by_side(const Network& network, const std::vector<double>& channel, Index link, Side side,
-                   std::vector<Bounds>& bounds) {
+                   std::vector<HeightRange>& ranges) {
     const Point& lower = network.vertices[network.lower[link]];
     const Point along = network.vertices[network.upper[link]] - lower;
     const double foot_elevation = channel[network.lower[link]];
@@ -41,7 +35,7 @@ void bound_by_side(const Network& network, const std::vector<double>& channel, I
         const double distance = norm(offset - share * along);
         const double side_rise = network.sidewall_slope[link][static_cast<std::size_t>(side)] * distance;
         const double foot = foot_elevation + share * rise;
-        Bounds& of_vertex = bounds[vertex];
+        HeightRange& of_vertex = ranges[vertex];
         of_vertex.allowed = std::min(of_vertex.allowed, foot + side_rise);
         of_vertex.least = std::max(of_vertex.least, foot + least_share_of_rise * side_rise);
     }
@@ -49,14 +43,23 @@ void bound_by_side(const Network& network, const std::vector<double>& channel, I
 
 }  // namespace
 
-std::vector<double> elevations(const Network& network, const Flint& flint, double base_level_m) {
-    std::vector<double> elevation = channel_elevations(network, flint, base_level_m);
-    std::vector<Bounds> bounds(network.vertices.size());
+std::vector<HeightRange> height_ranges(const Network& network, const Flint& flint, double base_level_m) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const std::vector<double> channel = channel_elevations(network, flint, base_level_m);
+    std::vector<HeightRange> ranges(network.vertices.size(), {.least = -infinity, .allowed = infinity});
     for (Index link = 0; link < network.size(); ++link) {
-        for (const Side side : {Side::left, Side::right}) bound_by_side(network, elevation, link, side, bounds);
+        for (const Side side : {Side::left, Side::right}) bound_by_side(network, channel, link, side, ranges);
     }
-    for (std::size_t vertex = 0; vertex < elevation.size(); ++vertex) {
-        if (std::isnan(elevation[vertex])) elevation[vertex] = std::max(bounds[vertex].allowed, bounds[vertex].least);
+    for (std::size_t vertex = 0; vertex < channel.size(); ++vertex) {
+        if (!std::isnan(channel[vertex])) ranges[vertex] = {channel[vertex], channel[vertex]};
+    }
+    return ranges;
+}
+
+std::vector<double> elevations(const Network& network, const Flint& flint, double base_level_m) {
+    std::vector<double> elevation;
+    for (const HeightRange& range : height_ranges(network, flint, base_level_m)) {
+        elevation.push_back(std::max(range.allowed, range.least));
     }
     return elevation;
 }

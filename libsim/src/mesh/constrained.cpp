@@ -6,31 +6,13 @@
 
 #include <algorithm>
 
-#include "mesh/hilbert.hpp"
 #include "thalweg/core/error.hpp"
+#include "thalweg/mesh/hilbert.hpp"
 
 namespace thalweg::mesh {
 namespace {
 
 using Vertex = Constrained::Vertex_handle;
-
-/// Inserts the points, each beside the one before; gives the outline's vertices.
-std::vector<Vertex> insert_points(Delaunay& delaunay, const std::vector<Point>& points, Index outline_count,
-                                  std::span<const Index> order) {
-    std::vector<Vertex> outline(outline_count);
-    Delaunay::Face_handle near;
-    for (const Index number : order) {
-        const Point& p = points[number];
-        const Vertex vertex = delaunay.insert(Kernel::Point_2(p.x, p.y), near);
-        if (vertex->info().value != none) {
-            throw Error(fmt::format("two of the mesh's points lie at the same place ({}, {})", p.x, p.y));
-        }
-        vertex->info().value = number;
-        if (number < outline_count) outline[number] = vertex;
-        near = vertex->face();
-    }
-    return outline;
-}
 
 void constrain_rings(Constrained& constrained, const std::vector<Vertex>& outline, std::span<const Index> ring_start) {
     try {
@@ -88,6 +70,27 @@ Polygon walk_ring(const Constrained& constrained, const std::vector<Vertex>& ver
 
 }  // namespace
 
+std::vector<Vertex> insert_points(Constrained& constrained, std::span<const Point> points, Index first_count,
+                                  std::span<const Index> order) {
+    Delaunay delaunay;  // built without thought of constraints, which is faster, and then handed over
+    std::vector<Vertex> first(first_count);
+    Delaunay::Face_handle near;
+    for (const Index number : order) {
+        const Point& p = points[number];
+        const Vertex vertex = delaunay.insert(Kernel::Point_2(p.x, p.y), near);
+        if (vertex->info().value != none) {
+            throw Error(fmt::format("two of the mesh's points lie at the same place ({}, {})", p.x, p.y));
+        }
+        vertex->info().value = number;
+        if (number < first_count) first[number] = vertex;
+        near = vertex->face();
+    }
+    if (delaunay.dimension() < 2) throw Error("the mesh's points all lie on one line");
+    constrained.tds().swap(delaunay.tds());
+    constrained.set_infinite_vertex(delaunay.infinite_vertex());
+    return first;
+}
+
 void triangulate_conforming(std::vector<Point>& points, std::span<const Index> ring_start, std::span<const Index> order,
                             Constrained& constrained) {
     const Index outline_count = ring_start.back();
@@ -97,11 +100,7 @@ void triangulate_conforming(std::vector<Point>& points, std::span<const Index> r
         throw Error(
             fmt::format("{} of {} points lie on a ring of the outline, which needs 3 or more", count, points.size()));
     }
-    Delaunay delaunay;  // built without thought of constraints, which is faster, and then handed over
-    const std::vector<Vertex> outline = insert_points(delaunay, points, outline_count, order);
-    if (delaunay.dimension() < 2) throw Error("the mesh's points all lie on one line");
-    constrained.tds().swap(delaunay.tds());
-    constrained.set_infinite_vertex(delaunay.infinite_vertex());
+    const std::vector<Vertex> outline = insert_points(constrained, points, outline_count, order);
     constrain_rings(constrained, outline, ring_start);
     CGAL::make_conforming_Gabriel_2(constrained);
     number_added_points(constrained, points);

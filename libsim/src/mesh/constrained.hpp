@@ -32,6 +32,11 @@ using Constrained =
     CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure,
                                                CGAL::No_constraint_intersection_requiring_constructions_tag>;
 
+/// Puts the points into an empty triangulation, each beside the one before, numbered by their place in the list; gives
+/// the vertices of the first so many. Throws Error if two coincide or all lie on one line.
+std::vector<Constrained::Vertex_handle> insert_points(Constrained&, std::span<const Point> points, Index first_count,
+                                                      std::span<const Index> order);
+
 /// Triangulates the points, inserted in the given order, with rings through the first of them as constraints: ring r
 /// through the points ring_start[r] … ring_start[r + 1] − 1. Adds points on the rings until no vertex lies in the
 /// diametral disc of one of their edges (Gabriel). Numbers the vertices as `points` does and appends those added.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "mesh/hilbert.hpp"
+#include "thalweg/mesh/hilbert.hpp"
 
 #include <algorithm>
 #include <array>

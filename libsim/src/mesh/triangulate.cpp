@@ -8,7 +8,7 @@
 
 #include "mesh/assemble.hpp"
 #include "mesh/constrained.hpp"
-#include "mesh/hilbert.hpp"
+#include "thalweg/mesh/hilbert.hpp"
 #include "mesh/outline.hpp"
 #include "thalweg/core/error.hpp"
 

@@ -31,15 +31,6 @@ TerrainInput input_of(const NamedRaster& dem, const RasterMeasurement& m) {
             .origin = dem.origin};
 }
 
-Json conditioning_json(const ConditioningReport& c, Conditioning method) {
-    constexpr std::array names{"fill", "carve", "none"};
-    return {{"method", names[static_cast<std::size_t>(method)]},
-            {"pits", c.pits},
-            {"cells_changed", c.cells_changed},
-            {"volume_m3", c.volume_m3},
-            {"flat_cells", c.flat_cells}};
-}
-
 Json heads_json(const ChannelHeads& heads) {
     return {{"given", heads.given}, {"outside", heads.outside}, {"merged", heads.merged}};
 }

@@ -27,6 +27,7 @@ struct Side {
     std::optional<NamedRaster> raster;  ///< still to be measured
     Json summary;
     std::vector<double> link_length_m{}, link_area_m2{};  ///< empty where a folder does not hold them
+    std::optional<Index> outlet{};                        ///< of a raster that is one catchment
 };
 
 Side analyzed_side(const fs::path& folder) {
@@ -39,12 +40,20 @@ Side analyzed_side(const fs::path& folder) {
     return side;
 }
 
+Side grown_side(const fs::path& folder, const Messages& messages) {
+    Side side{folder, read_dem(folder / "elevation.tif", {}, {.progress = messages.progress}), nullptr};
+    side.outlet = grown_outlet(folder, side.raster->raster);
+    return side;
+}
+
 Side load(const fs::path& path, const CompareOptions& options, const Messages& messages) {
     switch (kind_of(path)) {
         case ResultKind::analyzed:
             return analyzed_side(path);
         case ResultKind::simulated:
             return {path, read_dem(path / "elevation.tif", {}, {.progress = messages.progress}), nullptr};
+        case ResultKind::grown:
+            return grown_side(path, messages);
         case ResultKind::file:
             break;
     }
@@ -85,6 +94,7 @@ double common_threshold(const Side& a, const Side& b, const CompareOptions& opti
 void measure_side(Side& side, MeasureOptions options, double threshold_m2) {
     if (!side.raster) return;
     options.channel_area_m2 = threshold_m2;
+    if (side.outlet) options.catchment_outlet = side.outlet;
     const RasterMeasurement m = measure_raster(side.raster->raster, options);
     std::vector<std::string> notes = side.raster->warnings;
     side.summary = terrain_json({}, m.statistics, positions(side.raster->raster), nullptr, notes);

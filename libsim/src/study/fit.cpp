@@ -72,6 +72,13 @@ Target raster_target(const fs::path& file, const FitOptions& options, const Mess
             .warnings = dem.warnings};
 }
 
+Target grown_target(const fs::path& folder, FitOptions options, const Messages& messages) {
+    const fs::path file = folder / "elevation.tif";
+    const Raster raster = read_dem(file, options.read, {}).raster;
+    if (!options.outlet) options.measure.catchment_outlet = grown_outlet(folder, raster);
+    return raster_target(file, options, {.progress = messages.progress});
+}
+
 void refuse_outlet(const fs::path& folder, const FitOptions& options) {
     if (!options.outlet) return;
     throw Error(
@@ -93,6 +100,8 @@ Target target_of(const fs::path& path, const FitOptions& options, const Messages
                 return node_target(path);
             }
             return raster_target(path / "elevation.tif", options, {.progress = messages.progress});
+        case ResultKind::grown:
+            return grown_target(path, options, messages);
         case ResultKind::file:
             break;
     }

@@ -185,6 +185,7 @@ Target target_of(const fs::path& path, const GrowthFitOptions& options) {
             return target;
         }
         case ResultKind::simulated:
+        case ResultKind::grown:
             return {path / "elevation.tif", options.measure, "raster"};
         case ResultKind::file:
             break;

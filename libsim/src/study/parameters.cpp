@@ -389,6 +389,11 @@ const Words<grow::UpstreamLink>& words(grow::UpstreamLink) {
                                                {"turns", grow::UpstreamLink::turns}};
     return all;
 }
+const Words<grow::Thalweg>& words(grow::Thalweg) {
+    static const Words<grow::Thalweg> all{{"along_channel", grow::Thalweg::along_channel},
+                                          {"minimum_norm", grow::Thalweg::minimum_norm}};
+    return all;
+}
 const Words<evolve::Pattern>& words(evolve::Pattern) {
     static const Words<evolve::Pattern> all{
         {"constant", evolve::Pattern::constant}, {"gradient", evolve::Pattern::gradient},

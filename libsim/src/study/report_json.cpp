@@ -87,6 +87,13 @@ Json ratio_json(const channel::HortonRatio& ratio) {
             {"regression_ci95", interval({ratio.regression, ratio.regression_se, ratio.regression_ci95})}};
 }
 
+Json horton_json(const channel::HortonRatios& h) {
+    return {{"RB", ratio_json(h.bifurcation)},
+            {"RL", ratio_json(h.length)},
+            {"RA", ratio_json(h.area)},
+            {"RS", ratio_json(h.slope)}};
+}
+
 Json slope_area_json(const channel::SlopeArea& s) {
     Json bins = Json::array();
     for (const auto& bin : s.bins) {
@@ -181,19 +188,40 @@ Json interval(const Estimate& estimate) {
     return numbers(estimate.interval95);
 }
 
+Json conditioning_json(const ConditioningReport& c, Conditioning method) {
+    constexpr std::array names{"fill", "carve", "none"};
+    return {{"method", names[static_cast<std::size_t>(method)]},
+            {"pits", c.pits},
+            {"cells_changed", c.cells_changed},
+            {"volume_m3", c.volume_m3},
+            {"flat_cells", c.flat_cells}};
+}
+
+Json tree_json(const TreeStatistics& t, std::vector<std::string>& notes) {
+    Json channels = channels_json(t.channels);
+    for (const char* only_of_terrains : {"rule", "threshold_area_m2", "source_area_m2", "share_used", "cells"}) {
+        channels.erase(only_of_terrains);
+    }
+    Json tree{
+        {"channels", std::move(channels)}, {"strahler", strahler_json(t.strahler)}, {"horton", horton_json(t.horton)}};
+    std::vector<std::string> of_laws;
+    tree.update(network_json(t.laws, of_laws));
+    tree.erase("area_exceedance");
+    tree["flint_links"] = {{"p", number(t.flint_links.coefficient.value)}, {"q", number(t.flint_links.exponent.value)}};
+    for (const std::string& note : of_laws) {
+        if (!note.starts_with("area_exceedance")) notes.push_back("tree." + note);
+    }
+    explain_null("tree.horton", tree["horton"], "the ratios need at least two Strahler orders", notes);
+    explain_null("tree.flint_links", tree["flint_links"], "a law needs links of two magnitudes", notes);
+    return tree;
+}
+
 Json terrain_json(const TerrainInput& input, const Statistics& s, const PositionOf& position, Json conditioning,
                   std::vector<std::string>& notes) {
     explain_nulls(s, notes);
-    Json summary{{"input", input_json(input, s.hypsometry)},
-                 {"conditioning", std::move(conditioning)},
-                 {"hypsometry", hypsometry_json(s.hypsometry)},
-                 {"channels", channels_json(s.channels)},
-                 {"strahler", strahler_json(s.strahler)},
-                 {"horton",
-                  {{"RB", ratio_json(s.horton.bifurcation)},
-                   {"RL", ratio_json(s.horton.length)},
-                   {"RA", ratio_json(s.horton.area)},
-                   {"RS", ratio_json(s.horton.slope)}}}};
+    Json summary{{"input", input_json(input, s.hypsometry)},    {"conditioning", std::move(conditioning)},
+                 {"hypsometry", hypsometry_json(s.hypsometry)}, {"channels", channels_json(s.channels)},
+                 {"strahler", strahler_json(s.strahler)},       {"horton", horton_json(s.horton)}};
     summary.update(network_json(s.network_laws, notes));
     summary["slope_area"] = slope_area_json(s.slope_area);
     summary["chi"] = chi_json(s.chi, notes);

@@ -12,6 +12,7 @@
 #include "thalweg/study/analyze.hpp"
 #include "thalweg/study/measure.hpp"
 #include "thalweg/study/tables.hpp"
+#include "thalweg/study/tree_statistics.hpp"
 
 namespace thalweg::study {
 
@@ -43,6 +44,11 @@ Json origin_json(const Origin&);
 /// The keys of an `analyze` summary. `conditioning` may be null (a mesh needs none). Reasons for nulls go to `notes`.
 Json terrain_json(const TerrainInput&, const Statistics&, const PositionOf&, Json conditioning,
                   std::vector<std::string>& notes);
+
+Json conditioning_json(const ConditioningReport&, Conditioning method);
+
+/// The keys from `channels` to `junctions` of a grown tree, and `flint_links`.
+Json tree_json(const TreeStatistics&, std::vector<std::string>& notes);
 
 /// The keys `tokunaga`, `hack`, `links`, `flint`, `junctions`, `area_exceedance` and `width_function`.
 Json network_json(const NetworkStatistics&, std::vector<std::string>& notes);

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "study/report_json.hpp"
 #include "thalweg/core/error.hpp"
 
 namespace thalweg::study {
@@ -10,8 +11,21 @@ namespace thalweg::study {
 ResultKind kind_of(const std::filesystem::path& path) {
     if (!std::filesystem::is_directory(path)) return ResultKind::file;
     if (std::filesystem::is_regular_file(path / "slope_area_nodes.csv")) return ResultKind::simulated;
+    if (std::filesystem::is_regular_file(path / "elevation.tif")) return ResultKind::grown;
     if (std::filesystem::is_regular_file(path / "summary.json")) return ResultKind::analyzed;
-    throw Error(fmt::format("'{}' is neither a DEM nor the folder of an analyze or simulate run", path.string()));
+    throw Error(fmt::format("'{}' is neither a DEM nor the folder of an analyze, simulate or grow run", path.string()));
+}
+
+Index grown_outlet(const std::filesystem::path& folder, const Raster& raster) {
+    const Json summary = read_json(folder / "summary.json");
+    const Json::json_pointer basin("/terrain/basins/0");
+    if (summary.contains(basin)) {
+        const Json& outlet = summary.at(basin);
+        const Index cell = cell_at(raster, {outlet.at("outlet_x").get<double>(), outlet.at("outlet_y").get<double>()});
+        if (cell != none) return cell;
+    }
+    throw Error(fmt::format("'{}' does not say where the grown terrain's water leaves; grow it anew",
+                            (folder / "summary.json").string()));
 }
 
 void refuse_dem_options(const std::filesystem::path& folder, const io::ReadOptions& read,

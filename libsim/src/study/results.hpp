@@ -11,11 +11,15 @@
 
 namespace thalweg::study {
 
-enum class ResultKind { file, analyzed, simulated };
+enum class ResultKind { file, analyzed, simulated, grown };
 
-/// What a path names: a file (a DEM), or the folder of an analyze or a simulate run.
+/// What a path names: a file (a DEM), or the folder of an analyze, simulate or grow run.
 /// Throws Error for anything else.
 ResultKind kind_of(const std::filesystem::path&);
+
+/// The cell of a grown terrain's elevation.tif at which its water leaves, as the folder's summary says: the rim is a
+/// divide, not a cut. Throws Error where the folder does not say it.
+Index grown_outlet(const std::filesystem::path& folder, const Raster&);
 
 /// Throws Error if anything is asked for that only holds while a DEM is read and measured: the folder was measured
 /// before.

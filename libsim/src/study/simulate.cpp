@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +11,7 @@
 #include "study/report_json.hpp"
 #include "study/simulation_outputs.hpp"
 #include "study/snapshots.hpp"
+#include "study/stopwatch.hpp"
 #include "study/terrain_files.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/evolve/simulate.hpp"
@@ -22,14 +22,6 @@ namespace thalweg::study {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-class Stopwatch {
-  public:
-    double seconds() const { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
-
-  private:
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Where a run writes, and where it saves itself (nowhere: null).
 struct Places {
@@ -277,7 +269,7 @@ std::string run(const Topology& topology, const Experiment& e, Domain& domain, d
     const Heightfield h = heightfield(topology, domain, finished, e);
     const auto basins = static_cast<Index>(finished.statistics.basins.size());
     add_perimeters(terrain::basin_perimeters(h.elevation.grid, h.basin_of, basins), finished.statistics);
-    const PositionOf position = map_positions(domain);
+    const PositionOf position = map_positions(domain, h.elevation);
     write_results(h, finished, outcome, position, e, folder);
     const Json terrain_files = write_terrain_files(topology, domain, h, finished, e, folder);
     write_text(folder / "experiment.toml", to_toml(e));

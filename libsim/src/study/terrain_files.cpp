@@ -20,6 +20,10 @@ mesh::MeshFormat format_of(MeshFile file) {
     return file == MeshFile::obj ? mesh::MeshFormat::obj : mesh::MeshFormat::ply;
 }
 
+std::vector<MeshFile> files_of(const Experiment& e) {
+    return e.output.mesh_file ? std::vector{*e.output.mesh_file} : std::vector<MeshFile>{};
+}
+
 double base_of(const TriangleSurface& surface, const Experiment& e, double extent_m) {
     return *std::min_element(surface.z.begin(), surface.z.end()) - e.output.base_depth_m.value_or(extent_m / 20);
 }
@@ -47,39 +51,6 @@ Json write_surface(const fs::path& folder, const char* name, MeshFile file, Tria
     return described;
 }
 
-/// A surface and where its zero lies on the map.
-struct PlacedSurface {
-    TriangleSurface surface;
-    LocalMetres local;
-};
-
-/// `own` makes the surface of the simulation's own nodes, given where the heightfield's zero lies.
-template <class Own>
-Json write_files(const Heightfield& h, const Domain& domain, const Experiment& e, const fs::path& folder, Own own) {
-    Json keys = Json::object();
-    if (e.output.heightmap) {
-        const io::HeightmapScale scale = io::write_heightmap(folder / "elevation.png", h.elevation);
-        keys["heightmap"] = {{"file", "elevation.png"},
-                             {"metres_per_count", scale.metres_per_count},
-                             {"offset_m", scale.offset_m},
-                             {"nodata_count", 0}};
-    }
-    if (!e.output.mesh_file && !e.output.heightfield_mesh_file) return keys;
-    const LocalMetres local = local_metres(h.elevation);
-    keys["meshes"] = Json::array();
-    if (e.output.mesh_file) {
-        PlacedSurface nodes = own(local);
-        keys["meshes"].push_back(write_surface(folder, "mesh", *e.output.mesh_file, std::move(nodes.surface),
-                                               nodes.local, e, domain.extent_m));
-    }
-    if (e.output.heightfield_mesh_file) {
-        TriangleSurface cells = surface::triangle_surface(h.elevation.grid, local.centers, h.elevation.values);
-        keys["meshes"].push_back(write_surface(folder, "heightfield", *e.output.heightfield_mesh_file, std::move(cells),
-                                               local, e, domain.extent_m));
-    }
-    return keys;
-}
-
 }  // namespace
 
 void check_terrain_files(const Experiment& e) {
@@ -94,23 +65,54 @@ void check_terrain_files(const Experiment& e) {
     }
 }
 
+Json write_terrain_files(const Raster& elevation, const OwnMesh& own, const Experiment& e, const fs::path& folder) {
+    Json keys = Json::object();
+    if (e.output.heightmap) {
+        const io::HeightmapScale scale = io::write_heightmap(folder / "elevation.png", elevation);
+        keys["heightmap"] = {{"file", "elevation.png"},
+                             {"metres_per_count", scale.metres_per_count},
+                             {"offset_m", scale.offset_m},
+                             {"nodata_count", 0}};
+    }
+    if (own.files.empty() && !e.output.heightfield_mesh_file) return keys;
+    const LocalMetres local = local_metres(elevation);
+    keys["meshes"] = Json::array();
+    if (!own.files.empty()) {
+        const TriangleSurface surface = own.surface(local);
+        for (const MeshFile file : own.files) {
+            keys["meshes"].push_back(write_surface(folder, "mesh", file, surface, local, e, own.extent_m));
+        }
+    }
+    if (e.output.heightfield_mesh_file) {
+        TriangleSurface cells = surface::triangle_surface(elevation.grid, local.centers, elevation.values);
+        keys["meshes"].push_back(write_surface(folder, "heightfield", *e.output.heightfield_mesh_file, std::move(cells),
+                                               local, e, own.extent_m));
+    }
+    return keys;
+}
+
 Json write_terrain_files(const Grid& grid, const Domain& domain, const Heightfield& h, const Finished& f,
                          const Experiment& e, const fs::path& folder) {
-    return write_files(h, domain, e, folder, [&](const LocalMetres&) {
-        // Its own cells, which the heightfield's need not be (output.resolution).
-        LocalMetres local = local_metres(Raster{grid, domain.placement, f.terrain.elevation_m});
-        return PlacedSurface{surface::triangle_surface(grid, local.centers, f.terrain.elevation_m), local};
-    });
+    return write_terrain_files(h.elevation,
+                               {.files = files_of(e),
+                                .surface =
+                                    [&](const LocalMetres& local) {
+                                        return surface::triangle_surface(grid, local.centers, f.terrain.elevation_m);
+                                    },
+                                .extent_m = domain.extent_m},
+                               e, folder);
 }
 
 Json write_terrain_files(const Mesh& mesh, const Domain& domain, const Heightfield& h, const Finished& f,
                          const Experiment& e, const fs::path& folder) {
-    return write_files(h, domain, e, folder, [&](const LocalMetres& local) {
+    const auto own = [&](const LocalMetres& local) {
         TriangleSurface surface = surface::triangle_surface(mesh, f.terrain.elevation_m);
         for (double& x : surface.x) x -= local.origin.x * domain.unit_m;
         for (double& y : surface.y) y -= local.origin.y * domain.unit_m;
-        return PlacedSurface{surface, local};
-    });
+        return surface;
+    };
+    return write_terrain_files(h.elevation, {.files = files_of(e), .surface = own, .extent_m = domain.extent_m}, e,
+                               folder);
 }
 
 }  // namespace thalweg::study

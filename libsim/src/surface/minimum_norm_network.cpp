@@ -23,6 +23,11 @@ void check(const TensionMesh& mesh) {
         throw Error(fmt::format("a surface needs x, y, height and tension of each vertex: given are {}, {}, {} and {}",
                                 count, mesh.y.size(), mesh.height.size(), mesh.tension.size()));
     }
+    for (const std::size_t given : {mesh.given_slope_x.size(), mesh.given_slope_y.size()}) {
+        if (given == (mesh.given_slope_x.empty() ? 0 : count)) continue;
+        throw Error(
+            fmt::format("{} gradients are given for {} vertices: a surface needs one for each, or none", given, count));
+    }
     for (std::size_t i = 0; i < count; ++i) {
         if (!std::isfinite(mesh.x[i]) || !std::isfinite(mesh.y[i]) || !std::isfinite(mesh.height[i])) {
             throw Error(fmt::format("vertex {} lies at ({}, {}, {}): a surface needs numbers", i, mesh.x[i], mesh.y[i],
@@ -180,6 +185,10 @@ void lay_out(const MinimumNormNetwork& network, std::size_t vertices, System& sy
     system.links.resize(system.start.back());
 }
 
+bool is_given(const TensionMesh& mesh, std::size_t vertex) {
+    return std::isfinite(mesh.given_slope_x[vertex]) && std::isfinite(mesh.given_slope_y[vertex]);
+}
+
 System assemble(const TensionMesh& mesh, const MinimumNormNetwork& network) {
     System system;
     lay_out(network, mesh.x.size(), system);
@@ -202,6 +211,9 @@ System assemble(const TensionMesh& mesh, const MinimumNormNetwork& network) {
         }
     }
     std::transform(system.own.begin(), system.own.end(), system.inverse.begin(), inverse_of);
+    for (std::size_t i = 0; i < mesh.given_slope_x.size(); ++i) {
+        if (is_given(mesh, i)) system.inverse[i] = {};  // nothing there is corrected
+    }
     return system;
 }
 
@@ -233,10 +245,19 @@ double largest(const std::vector<Vector>& vectors) {
     return found;
 }
 
-/// Chebyshev's iteration for eigenvalues in 1 ± coupling (Saad 2003, algorithm 12.1), from no gradient at all. The
+/// No gradient, but where it is given.
+std::vector<Vector> beginning(const TensionMesh& mesh) {
+    std::vector<Vector> gradient(mesh.x.size());
+    for (std::size_t i = 0; i < mesh.given_slope_x.size(); ++i) {
+        if (is_given(mesh, i)) gradient[i] = {mesh.given_slope_x[i], mesh.given_slope_y[i]};
+    }
+    return gradient;
+}
+
+/// Chebyshev's iteration for eigenvalues in 1 ± coupling (Saad 2003, algorithm 12.1). The
 /// residual is computed anew in every round, so that rounding does not add up.
-std::vector<Vector> solve(const System& system, MinimumNormNetwork& network) {
-    std::vector<Vector> gradient(system.size()), next(system.size()), step(system.size());
+std::vector<Vector> solve(const System& system, std::vector<Vector> gradient, MinimumNormNetwork& network) {
+    std::vector<Vector> next = gradient, step(system.size());
     const double coupling = std::clamp(system.coupling, 1e-12, 0.5) * (1 + 1e-9);  // a hair for rounding in the blocks
     network.iterations = rounds_needed(coupling);
     double weight = coupling;
@@ -272,7 +293,7 @@ MinimumNormNetwork minimum_norm_network(const TensionMesh& mesh) {
     number_edges(mesh, network);
     set_edge_tension(mesh, network);
     const System system = assemble(mesh, network);
-    const std::vector<Vector> gradient = solve(system, network);
+    const std::vector<Vector> gradient = solve(system, beginning(mesh), network);
     network.slope_x.assign(mesh.x.size(), std::numeric_limits<double>::quiet_NaN());
     network.slope_y = network.slope_x;
     for (Index i = 0; i < system.size(); ++i) {

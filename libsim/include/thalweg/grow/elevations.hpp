@@ -8,6 +8,15 @@
 
 namespace thalweg::grow {
 
+/// What the valley sides around a vertex say of its height, m; both the same on channels.
+struct HeightRange {
+    double least;    ///< above all channels that it drains to
+    double allowed;  ///< the lowest that a sidewall reaches; may lie under `least`, which counts then
+};
+
+/// The bounds of which `elevations` takes one.
+std::vector<HeightRange> height_ranges(const Network&, const Flint&, double base_level_m);
+
 /// Elevation of every vertex (m).
 ///
 /// Channels rise from the base level by Flint's gradient at their final magnitude: z2 = z1 + S·L (Kelley et al. 1988,

@@ -17,6 +17,7 @@
 #include "thalweg/evolve/river.hpp"
 #include "thalweg/evolve/tectonics.hpp"
 #include "thalweg/grow/grow.hpp"
+#include "thalweg/grow/surface_mesh.hpp"
 #include "thalweg/mesh/points.hpp"
 #include "thalweg/terrain/route.hpp"
 
@@ -136,6 +137,7 @@ struct Experiment {
     struct {
         std::optional<double> channel_maintenance_m;
         grow::Dials dials;  ///< but for `channel_maintenance_m` and `seed`, which stand elsewhere: see `dials_of`
+        grow::Thalweg thalweg = grow::Thalweg::along_channel;
         double tension_channel = 5;
         double tension_ridge = 0;
         double extra_tension_channel = 0;  ///< along channels
@@ -187,6 +189,7 @@ const Words<MeshFile>& words(MeshFile);
 const Words<FitMethod>& words(FitMethod);
 const Words<grow::Stop>& words(grow::Stop);
 const Words<grow::UpstreamLink>& words(grow::UpstreamLink);
+const Words<grow::Thalweg>& words(grow::Thalweg);
 const Words<evolve::Pattern>& words(evolve::Pattern);
 const Words<terrain::Receiver>& words(terrain::Receiver);
 const Words<evolve::Flow>& words(evolve::Flow);
@@ -253,6 +256,9 @@ void describe_growth(AnyExperiment& e, Visit& visit) {
           g.dials.upstream_link);
     visit(Field{"growth.stop", "", "stop at the drainage density wanted, or when no link can take a tributary"},
           g.dials.stop);
+    visit(Field{"growth.thalweg", "",
+                "the surface's gradient on channels: the channel's own, or found like all others"},
+          g.thalweg);
     visit(Field{"growth.tension_channel", "", "tension of the surface at channels", 0, 1e6}, g.tension_channel);
     visit(Field{"growth.tension_ridge", "", "tension at divides and the outline", 0, 1e6}, g.tension_ridge);
     visit(Field{"growth.extra_tension_channel", "", "tension of edges along channels beyond the mean of their ends'", 0,
@@ -345,7 +351,7 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"time.max_steps", "", "most steps (or sweeps of the steady solver)", 1, 1e9}, e.time.max_steps);
     visit(Field{"time.convergence", "", "stop when the mean rate is below this share of the mean uplift; 0: never", 0},
           e.time.convergence);
-    visit(Field{"output.resolution", "", "cells along the longer side of the heightfield; default 512 of a TIN, a raster mesh's own cells", 2, 100000},
+    visit(Field{"output.resolution", "", "cells along the longer side of a TIN's heightfield; default 512", 2, 100000},
           e.output.resolution);
     visit(Field{"output.interpolation", "",
                 "how a TIN becomes a heightfield: smoothed, linear in its triangles, or by natural neighbours"},

@@ -23,6 +23,8 @@ struct TensionMesh {
     std::span<const double> tension;                   ///< per vertex, ≥ 0, dimensionless
     std::span<const std::array<Index, 3>> triangles;   ///< counter-clockwise
     std::span<const ExtraTension> extra_tension = {};  ///< for some edges
+    /// Gradients known beforehand, per vertex: NaN where they are to be found; empty: everywhere.
+    std::span<const double> given_slope_x = {}, given_slope_y = {};
 };
 
 /// The network of curves over the edges, and what the patches between them need.
@@ -47,6 +49,8 @@ struct MinimumNormNetwork {
 /// every round: after at most 32 rounds it is under rounding. No fill, no inner product, the same bytes for any number
 /// of threads.
 ///
+/// Given gradients stay what they are; the others are then the best beside them. The bounds hold for them as well.
+///
 /// Where two vertices are much nearer to each other than to the rest and differ in height, the gradient there is steep
 /// and is felt over the longer edges as well; a tension that has no unit does little against it.
 ///
@@ -54,8 +58,8 @@ struct MinimumNormNetwork {
 /// which they do not, by 1/sin² of the widest angle between their lines. Where all of them lie on one line to 1e-6 (a
 /// corner of triangles without area) the gradient across it is that of least length: none. Cost: linear; 1e5 vertices
 /// with 3e5 edges take 0.1 to 0.2 s. Throws Error for arrays of unequal length, corners that do not exist, an
-/// edge of no length, a height or place that is no number, a tension that is negative or no number, and extra tension
-/// on what is no edge.
+/// edge of no length, a height or place that is no number, a tension that is negative or no number, extra tension on
+/// what is no edge, and given gradients that are not one for each vertex.
 MinimumNormNetwork minimum_norm_network(const TensionMesh&);
 
 /// The energy of the curves over all edges if the vertices had these gradients; the network's own are the least.

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/grow/surface_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <queue>
+
+#include "grow/plane.hpp"
+#include "thalweg/core/error.hpp"
+#include "thalweg/grow/elevations.hpp"
+#include "thalweg/mesh/hilbert.hpp"
+#include "thalweg/mesh/triangulate_lines.hpp"
+
+namespace thalweg::grow {
+namespace {
+
+/// The pieces of every line: numbers of the vertices within it, from `from` to `to`, follow each other.
+class Pieces {
+  public:
+    Pieces(const Network& network, double longest_m) {
+        double next = static_cast<double>(network.vertices.size());
+        for (const Edge& edge : network.edges) {
+            const double length = norm(network.vertices[edge.to] - network.vertices[edge.from]);
+            const double count = std::max(1.0, std::ceil(length / longest_m - 1e-9));
+            if (!(next + count < none)) {
+                throw Error(
+                    fmt::format("lines in pieces of {} m have more vertices than 32-bit numbers can count", longest_m));
+            }
+            line_.push_back({.from = edge.from,
+                             .to = edge.to,
+                             .first = static_cast<Index>(next),
+                             .inner = static_cast<Index>(count) - 1});
+            next += count - 1;
+        }
+        by_ends_ = line_;
+        std::sort(by_ends_.begin(), by_ends_.end(), [](const Line& a, const Line& b) { return a.ends() < b.ends(); });
+    }
+
+    struct Line {
+        Index from, to, first, inner;
+        std::pair<Index, Index> ends() const { return std::minmax(from, to); }
+    };
+
+    const Line& line(std::size_t edge) const { return line_[edge]; }
+
+    /// Appends the vertices from a up to, but without, b.
+    void append(Index a, Index b, std::vector<Index>& vertices) const {
+        const std::pair<Index, Index> ends = std::minmax(a, b);
+        const auto at = std::lower_bound(by_ends_.begin(), by_ends_.end(), ends,
+                                         [](const Line& line, const auto& wanted) { return line.ends() < wanted; });
+        vertices.push_back(a);
+        for (Index i = 0; i < at->inner; ++i) {
+            vertices.push_back(at->first + (at->from == a ? i : at->inner - 1 - i));
+        }
+    }
+
+  private:
+    std::vector<Line> line_, by_ends_;
+};
+
+void cut_edges(const Network& network, const Pieces& pieces, Network& cut) {
+    cut.edges.clear();
+    for (std::size_t i = 0; i < network.edges.size(); ++i) {
+        const Edge& edge = network.edges[i];
+        const Pieces::Line& line = pieces.line(i);
+        const Point& from = network.vertices[edge.from];
+        const Point along = network.vertices[edge.to] - from;
+        Index last = edge.from;
+        for (Index k = 0; k < line.inner; ++k) {
+            cut.vertices.push_back(from + ((k + 1.0) / (line.inner + 1.0)) * along);
+            cut.edges.push_back({last, line.first + k, edge.kind});
+            last = line.first + k;
+        }
+        cut.edges.push_back({last, edge.to, edge.kind});
+    }
+}
+
+/// `values` in a new order: the value at `order[i]` becomes the i-th.
+template <class T>
+std::vector<T> reordered(const std::vector<T>& values, const std::vector<Index>& order) {
+    std::vector<T> result;
+    result.reserve(values.size());
+    for (const Index i : order) result.push_back(values[i]);
+    return result;
+}
+
+/// The steepest valley side of all.
+double steepest_side(const Network& network) {
+    double steepest = 0;
+    for (const auto& [left, right] : network.sidewall_slope) steepest = std::max({steepest, left, right});
+    return steepest;
+}
+
+/// Vertices that share a side of a triangle, as compressed rows.
+struct Neighbors {
+    std::vector<Index> offset, list;
+};
+
+Neighbors neighbors_of(const SurfaceMesh& mesh) {
+    Neighbors n;
+    n.offset.assign(mesh.size() + 1, 0);
+    for (const auto& t : mesh.triangles) {
+        for (const Index corner : t) n.offset[corner + 1] += 2;
+    }
+    for (Index i = 0; i < mesh.size(); ++i) n.offset[i + 1] += n.offset[i];
+    n.list.resize(n.offset.back());
+    std::vector<Index> next(n.offset.begin(), n.offset.end() - 1);
+    for (const auto& t : mesh.triangles) {
+        for (int k = 0; k < 3; ++k) {
+            n.list[next[t[k]]++] = t[(k + 1) % 3];
+            n.list[next[t[k]]++] = t[(k + 2) % 3];
+        }
+    }
+    return n;
+}
+
+/// Lowers what rises more steeply from a neighbour than any valley side does, but nothing under its least height: from
+/// the lowest vertex up, each is looked at when nothing can lower it any more.
+void limit_slopes(const std::vector<double>& least, double steepest, SurfaceMesh& mesh) {
+    const Neighbors neighbors = neighbors_of(mesh);
+    using Waiting = std::pair<double, Index>;
+    std::vector<Waiting> first;
+    for (Index i = 0; i < mesh.size(); ++i) first.emplace_back(mesh.height[i], i);
+    std::priority_queue queue(std::greater<Waiting>{}, std::move(first));
+    while (!queue.empty()) {
+        const auto [height, from] = queue.top();
+        queue.pop();
+        if (height != mesh.height[from]) continue;  // lowered since
+        for (Index at = neighbors.offset[from]; at < neighbors.offset[from + 1]; ++at) {
+            const Index to = neighbors.list[at];
+            const double distance = std::hypot(mesh.x[to] - mesh.x[from], mesh.y[to] - mesh.y[from]);
+            const double most = std::max(least[to], height + steepest * distance);
+            if (!(most < mesh.height[to])) continue;
+            mesh.height[to] = most;
+            queue.emplace(most, to);
+        }
+    }
+}
+
+/// Gradients along the channels: a junction, the upper end of one link and the lower end of others, takes the former's.
+void set_channel_slopes(const Network& cut, const std::vector<HeightRange>& ranges, SurfaceMesh& mesh) {
+    mesh.channel_slope_x.assign(mesh.size(), std::numeric_limits<double>::quiet_NaN());
+    mesh.channel_slope_y = mesh.channel_slope_x;
+    for (Index link = 0; link < cut.size(); ++link) {
+        const Point along = cut.vertices[cut.upper[link]] - cut.vertices[cut.lower[link]];
+        const double rise = ranges[cut.upper[link]].least - ranges[cut.lower[link]].least;
+        const Point slope = (rise / dot(along, along)) * along;
+        for (const Index vertex : cut.polygon(link, Side::left)) {
+            const Index here = mesh.vertex_of[vertex];
+            const bool junction = vertex == cut.lower[link] && cut.downstream[link] != none;
+            if (mesh.on_channel[here] && !junction) {
+                mesh.channel_slope_x[here] = slope.x;
+                mesh.channel_slope_y[here] = slope.y;
+            }
+            if (vertex == cut.upper[link]) break;  // the polygon runs up the link first
+        }
+    }
+}
+
+}  // namespace
+
+Network subdivided(const Network& network, double longest_m) {
+    if (!(longest_m > 0)) throw Error(fmt::format("lines cannot be cut into pieces of {} m", longest_m));
+    const Pieces pieces(network, longest_m);
+    Network cut = network;
+    cut_edges(network, pieces, cut);
+    cut.polygon_vertices.clear();
+    cut.polygon_offset.assign(1, 0);
+    for (Index link = 0; link < network.size(); ++link) {
+        for (const Side side : {Side::left, Side::right}) {
+            const auto polygon = network.polygon(link, side);
+            for (std::size_t i = 0; i < polygon.size(); ++i) {
+                pieces.append(polygon[i], polygon[(i + 1) % polygon.size()], cut.polygon_vertices);
+            }
+            cut.polygon_offset.push_back(static_cast<Index>(cut.polygon_vertices.size()));
+        }
+    }
+    return cut;
+}
+
+SurfaceMesh surface_mesh(const Network& network, const Flint& flint, double base_level_m, double longest_m) {
+    const Network cut = subdivided(network, longest_m);
+    const std::vector<HeightRange> ranges = height_ranges(cut, flint, base_level_m);
+    const std::vector<Index> order = mesh::hilbert_order(cut.vertices);
+    SurfaceMesh surface;
+    surface.vertex_of.resize(order.size());
+    for (Index i = 0; i < order.size(); ++i) surface.vertex_of[order[i]] = i;
+    const std::vector<Point> points = reordered(cut.vertices, order);
+    std::vector<double> least;
+    for (const Index i : order) {
+        least.push_back(ranges[i].least);
+        surface.height.push_back(std::max(ranges[i].allowed, ranges[i].least));
+    }
+    surface.on_channel.assign(points.size(), 0);
+    std::vector<std::array<Index, 2>> lines;
+    for (const Edge& edge : cut.edges) {
+        const Edge line{surface.vertex_of[edge.from], surface.vertex_of[edge.to], edge.kind};
+        surface.lines.push_back(line);
+        lines.push_back({line.from, line.to});
+        if (edge.kind == EdgeKind::channel) surface.on_channel[line.from] = surface.on_channel[line.to] = 1;
+    }
+    for (const Point& p : points) {
+        surface.x.push_back(p.x);
+        surface.y.push_back(p.y);
+    }
+    surface.triangles = mesh::triangulate_lines(points, lines);
+    set_channel_slopes(cut, ranges, surface);
+    limit_slopes(least, steepest_side(network), surface);
+    surface.vertex_of.resize(network.vertices.size());
+    return surface;
+}
+
+}  // namespace thalweg::grow

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/grow.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "support/temp_folder.hpp"
+#include "thalweg/core/parallel.hpp"
+#include "thalweg/core/random.hpp"
+#include "thalweg/grow/elevations.hpp"
+#include "thalweg/io/raster_file.hpp"
+#include "thalweg/io/vector_file.hpp"
+#include "thalweg/study/output_folder.hpp"
+#include "thalweg/study/tree_statistics.hpp"
+
+using namespace thalweg;
+using namespace thalweg::study;
+using test::error_of;
+using test::TempFolder;
+using Json = nlohmann::json;
+
+namespace {
+
+Experiment small_growth() {
+    Experiment e;
+    e.seed = 7;
+    e.basin.outline =
+        std::vector<Point>{{0, 0}, {8000, 500}, {12000, 6000}, {7000, 11000}, {1000, 9000}, {-2000, 4000}};
+    e.basin.trunk = std::vector<Point>{{0, 0}, {6500, 8500}};
+    e.basin.base_level_m = 100;
+    e.growth.channel_maintenance_m = 700;
+    e.growth.dials.upstream_link = grow::UpstreamLink::turns;
+    e.output.resolution = 200;
+    return e;
+}
+
+GrownTerrain grown(const Experiment& e) { return grown_terrain(e, growth_site(e, Messages{}), Messages{}); }
+
+Json without_seconds(Json summary) {
+    summary.erase("seconds");
+    return summary;
+}
+
+double highest(const Raster& raster) {
+    double most = -1e300;
+    for (const double z : raster.values) {
+        if (!std::isnan(z)) most = std::max(most, z);
+    }
+    return most;
+}
+
+}  // namespace
+
+TEST_CASE("What is grown is written whole, and its summary holds tree and terrain side by side") {
+    const TempFolder folder;
+    Experiment e = small_growth();
+    e.output.mesh_file = MeshFile::ply;
+    e.growth.channel_width_m = 5;
+    std::filesystem::create_directory(folder / "out");
+    const Json s = Json::parse(study::grow(e, folder / "out", Messages{}));
+    CHECK(s["links"] == 2 * s["max_shreve"].get<int>() - 1);
+    CHECK(s["polygon_area_sum_m2"].get<double>() == Approx(s["basin_area_m2"].get<double>()).epsilon(1e-9));
+    CHECK(s["drainage_density_per_m"].get<double>() == Approx(1 / 700.0).epsilon(0.01));
+    CHECK(s["tree"]["channels"]["links"] == s["links"]);
+    CHECK(s["tree"]["flint_links"]["q"].get<double>() == Approx(-0.6).epsilon(1e-6));
+    CHECK(s["tree"]["flint_links"]["p"].get<double>() == Approx(0.1).epsilon(1e-6));
+    CHECK(s["tree"]["strahler"][0]["streams"] == s["max_shreve"]);
+    CHECK(s["tree"]["hack"]["exponent"].get<double>() > 0.4);
+    CHECK(s["terrain"]["measured_on"] == "raster");
+    CHECK(s["terrain"]["channels"]["total_length_m"].get<double>() ==
+          Approx(s["total_length_m"].get<double>()).epsilon(0.01));
+    CHECK(s["terrain"]["channels"]["outlets"] == 1);
+    CHECK(s["terrain"]["input"]["area_m2"].get<double>() == Approx(1.03e8).epsilon(1e-3));
+    CHECK(s["recovery"]["by_heads"]["recovered_share"].get<double>() >= 0.95);
+    CHECK(s["meshes"].size() == 2);
+    for (const char* file : {"elevation.tif", "network.gpkg", "mesh.obj", "mesh.ply", "links.csv", "slope_area.csv",
+                             "hypsometry.csv", "summary.json", "experiment.toml"}) {
+        CHECK(std::filesystem::is_regular_file(folder / "out" / file));
+    }
+    const auto shapes = io::read_vectors(folder / "out" / "network.gpkg", {.layers = {"links"}, .crs_wkt = {}});
+    CHECK(shapes.lines.size() == s["links"].get<std::size_t>());
+    const auto polygons = io::read_vectors(folder / "out" / "network.gpkg", {.layers = {"polygons"}, .crs_wkt = {}});
+    CHECK(polygons.polygons.size() == 2 * s["links"].get<std::size_t>());
+    const auto sources = io::read_vectors(folder / "out" / "network.gpkg", {.layers = {"sources"}, .crs_wkt = {}});
+    CHECK(sources.points.size() == s["max_shreve"].get<std::size_t>());
+    const Experiment again = read_experiment(folder / "out" / "experiment.toml");
+    CHECK(to_toml(again) == to_toml(e));
+}
+
+TEST_CASE("The same experiment grows the same terrain to the last bit, whatever the threads") {
+    Experiment e = small_growth();
+    e.growth.roughness_m = 3;
+    const TempFolder folder;
+    std::vector<Json> summaries;
+    std::vector<std::vector<double>> heights;
+    for (const int threads : {1, 2}) {
+        const ThreadLimit limit(threads);
+        const auto out = folder / std::to_string(threads);
+        std::filesystem::create_directory(out);
+        summaries.push_back(without_seconds(Json::parse(study::grow(e, out, Messages{}))));
+        heights.push_back(io::read_raster(out / "elevation.tif").raster.values);
+    }
+    CHECK(summaries[0] == summaries[1]);
+    for (std::size_t i = 0; i < heights[0].size(); ++i) {
+        const bool both_outside = std::isnan(heights[0][i]) && std::isnan(heights[1][i]);
+        REQUIRE((both_outside || heights[0][i] == heights[1][i]));
+    }
+    CHECK(read_text(folder / "1" / "network.gpkg") == read_text(folder / "2" / "network.gpkg"));
+    CHECK(read_text(folder / "1" / "mesh.obj") == read_text(folder / "2" / "mesh.obj"));
+    e.seed = 8;
+    CHECK(grown(e).growth.network.size() != summaries[0]["links"].get<Index>());
+}
+
+TEST_CASE("A terrain goes through its vertices, ends at the outline, and stands where the map says") {
+    Experiment e = small_growth();
+    const GrownTerrain plain = grown(e);
+    const grow::SurfaceMesh& mesh = plain.surface.mesh;
+    CHECK(highest(plain.elevation) < 1.1 * *std::max_element(mesh.height.begin(), mesh.height.end()));
+    std::size_t inside = 0;
+    for (const double z : plain.elevation.values) {
+        inside += !std::isnan(z);
+        if (!std::isnan(z)) REQUIRE(z > 90);
+    }
+    const double cell = plain.elevation.grid.area(0);
+    CHECK(inside * cell == Approx(1.03e8).epsilon(2e-3));
+    auto& outline = std::get<std::vector<Point>>(*e.basin.outline);
+    auto& trunk = std::get<std::vector<Point>>(*e.basin.trunk);
+    for (auto* line : {&outline, &trunk}) {
+        for (Point& p : *line) p = {p.x + 500000, p.y + 4000000};
+    }
+    const GrownTerrain moved = grown(e);
+    CHECK(moved.elevation.placement.west == Approx(plain.elevation.placement.west + 500000));
+    CHECK(moved.elevation.placement.north == Approx(plain.elevation.placement.north + 4000000));
+    CHECK(moved.growth.network.size() == plain.growth.network.size());
+}
+
+TEST_CASE("Roughness leaves channels alone, extra tension and width change what they are about") {
+    Experiment e = small_growth();
+    const GrownTerrain plain = grown(e);
+    const auto changed = [&](const Experiment& other) {
+        const Raster& raster = grown(other).elevation;
+        std::vector<double> change;
+        for (std::size_t i = 0; i < raster.values.size(); ++i) {
+            if (!std::isnan(raster.values[i])) change.push_back(std::abs(raster.values[i] - plain.elevation.values[i]));
+        }
+        return change;
+    };
+    Experiment rough = e;
+    rough.growth.roughness_m = 5;
+    const auto roughened = changed(rough);
+    CHECK(quantile(roughened, 1) <= 5);
+    CHECK(quantile(roughened, 0.5) > 0.05);
+    CHECK(quantile(roughened, 0) < 0.01);
+    Experiment tight = e;
+    tight.growth.extra_tension_side = 50;
+    CHECK(quantile(changed(tight), 0.9) > 0.1);
+    tight.growth.extra_tension_side = 0;
+    tight.growth.extra_tension_divide = 50;
+    CHECK(quantile(changed(tight), 0.99) > 0.1);
+    tight.growth.extra_tension_divide = 0;
+    tight.growth.extra_tension_channel = 50;
+    CHECK(quantile(changed(tight), 1) > 1e-3);
+}
+
+TEST_CASE("What cannot be grown is refused before anything is written") {
+    const TempFolder folder;
+    const auto refusal = [&](const Experiment& e) {
+        return error_of([&] { study::grow(e, folder / "none", Messages{}); });
+    };
+    Experiment e = small_growth();
+    e.growth.channel_maintenance_m.reset();
+    CHECK_THAT(refusal(e), Catch::Contains("growth.channel_maintenance_m is needed"));
+    e = small_growth();
+    e.growth.channel_maintenance_m = 1e6;
+    CHECK_THAT(refusal(e), Catch::Contains("trunk alone"));
+    e = small_growth();
+    e.growth.dials.sidewall_angle_deg = 88;
+    CHECK_THAT(refusal(e), Catch::Contains("sidewall_angle_deg"));
+    e = small_growth();
+    e.output.base_depth_m = 3;
+    CHECK_THAT(refusal(e), Catch::Contains("output.solid"));
+    CHECK_FALSE(std::filesystem::exists(folder / "none"));
+}
+
+TEST_CASE("Recovery counts junctions as a comparison of all pairs does") {
+    Random random(5, 2);
+    for (int trial = 0; trial < 20; ++trial) {
+        // Rivers side by side: three links that meet each, at random places.
+        channel::StreamNetwork found;
+        std::vector<Point> places, grown_at;
+        found.offset.push_back(0);
+        for (Index river = 0; river < 60; ++river) {
+            const Index link = 3 * river, node = 4 * river;
+            found.downstream.insert(found.downstream.end(), {none, link, link});
+            for (const Index upper : {node + 1, node + 2, node + 3}) {
+                found.nodes.insert(found.nodes.end(), {upper, upper == node + 1 ? node : node + 1});
+                found.offset.push_back(static_cast<Index>(found.nodes.size()));
+                found.length_m.push_back(2);
+            }
+            for (int i = 0; i < 4; ++i) places.push_back({100 * random.uniform() - 50, 100 * random.uniform() - 50});
+        }
+        for (int i = 0; i < 50; ++i) grown_at.push_back({100 * random.uniform() - 50, 100 * random.uniform() - 50});
+        const Recovery r = recovery(
+            grown_at, 7, found, [&](Index node) { return places[node]; }, 4);
+        const auto near = [&](const Point& a, const Point& b) { return std::hypot(a.x - b.x, a.y - b.y) <= 4; };
+        Index recovered = 0, unmatched = 0;
+        for (const Point& p : grown_at) {
+            bool any = false;
+            for (Index river = 0; river < 60; ++river) any = any || near(p, places[4 * river + 1]);
+            recovered += any;
+        }
+        for (Index river = 0; river < 60; ++river) {
+            bool any = false;
+            for (const Point& p : grown_at) any = any || near(p, places[4 * river + 1]);
+            unmatched += !any;
+        }
+        CHECK(r.grown == 50);
+        CHECK(r.found == 60);
+        CHECK(r.recovered == recovered);
+        CHECK(r.unmatched == unmatched);
+        CHECK(r.found_length_m == 360);
+        CHECK(r.tree_length_m == 7);
+    }
+}
