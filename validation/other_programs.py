@@ -37,7 +37,8 @@ step_yr = 100000
 max_steps = 20
 convergence = 0
 [output]
-{resolution}geotiff = "cog"
+resolution = 150
+geotiff = "cog"
 heightmap = "png"
 mesh_file = "{mesh}"
 heightfield_mesh_file = "{heightfield}"
@@ -106,8 +107,7 @@ class OtherPrograms(unittest.TestCase):
         for name, (domain, mesh, heightfield, _) in CASES.items():
             experiment = os.path.join(cls.temporary.name, f"{name}.toml")
             with open(experiment, "w", encoding="utf-8") as stream:
-                stream.write(EXPERIMENT.format(domain=domain, mesh=mesh, heightfield=heightfield,
-                                               resolution="" if name == "raster" else "resolution = 150\n"))
+                stream.write(EXPERIMENT.format(domain=domain, mesh=mesh, heightfield=heightfield))
             folder = os.path.join(cls.temporary.name, name)
             subprocess.run([THALWEG, "simulate", experiment, "--out", folder, "--quiet", "--no-figures"], check=True)
             with open(os.path.join(folder, "summary.json"), encoding="utf-8") as stream:

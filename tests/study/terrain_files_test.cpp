@@ -187,6 +187,68 @@ TEST_CASE("Output for other programs has the same bytes for any number of thread
     }
 }
 
+TEST_CASE("A raster mesh written at a resolution of its own lies on the same ground, bilinear between its cells") {
+    const TempFolder temp;
+    Experiment e = island(MeshKind::raster, 2000);
+    const Json own = simulated(e, temp / "own");
+    const Raster cells = io::read_raster(temp / "own/elevation.tif").raster;
+    const Raster area = io::read_raster(temp / "own/drainage_area.tif").raster;
+
+    e.output.resolution = 3 * cells.grid.cols;
+    const Json fine = simulated(e, temp / "fine");
+    const Raster thirds = io::read_raster(temp / "fine/elevation.tif").raster;
+    const Raster thirds_area = io::read_raster(temp / "fine/drainage_area.tif").raster;
+    CHECK(thirds.grid.cols == 3 * cells.grid.cols);
+    CHECK(thirds.placement.west == cells.placement.west);
+    CHECK(thirds.placement.north == cells.placement.north);
+    CHECK(thirds.placement.cell_width * 3 == Approx(cells.placement.cell_width));
+    CHECK(std::abs(thirds.grid.rows * thirds.placement.cell_height - cells.grid.rows * cells.placement.cell_height) <
+          thirds.placement.cell_height);
+    for (Index row = 0; row < thirds.grid.rows; ++row) {
+        const double y = (row + 0.5) * thirds.placement.cell_height / cells.placement.cell_height - 0.5;
+        if (y < 0 || y > cells.grid.rows - 1) continue;
+        const Index r = std::min(static_cast<Index>(y), cells.grid.rows - 2);
+        for (Index c = 0; c < cells.grid.cols; ++c) {  // the middle third of a cell stands at its column's centre
+            const double above = cells.values[r * cells.grid.cols + c];
+            const double below = cells.values[(r + 1) * cells.grid.cols + c];
+            const Index at = row * thirds.grid.cols + 3 * c + 1;
+            CHECK(thirds.values[at] == Approx(above + (y - r) * (below - above)).margin(1e-6));
+            const Index holds = std::min(static_cast<Index>(y + 0.5), cells.grid.rows - 1);
+            CHECK(thirds_area.values[at] == area.values[holds * cells.grid.cols + c]);
+        }
+    }
+    CHECK(fine["terrain"]["channels"] == own["terrain"]["channels"]);  // measured on the run's own graph
+}
+
+TEST_CASE("A catchment's cells in degrees, too, are written at another resolution") {
+    const TempFolder temp;
+    Experiment e;
+    e.domain.dem = jacksboro;
+    e.domain.mesh = MeshKind::raster;
+    e.river.k = 2e-5;
+    e.river.m = 0.5;
+    e.time.solver = Solver::steady;
+    simulated(e, temp / "own");
+    e.output.resolution = 150;
+    simulated(e, temp / "coarse");
+    const auto area_and_mean = [&](const char* folder) {
+        const Raster raster = io::read_raster(temp / folder / "elevation.tif").raster;
+        double area = 0, sum = 0;
+        for (Index node = 0; node < raster.grid.size(); ++node) {
+            if (std::isnan(raster.values[node])) continue;
+            area += raster.grid.area(node);
+            sum += raster.grid.area(node) * raster.values[node];
+        }
+        return std::pair{area, sum / area};
+    };
+    const auto [own_area, own_mean] = area_and_mean("own");
+    const auto [coarse_area, coarse_mean] = area_and_mean("coarse");
+    CHECK(coarse_area == Approx(own_area).epsilon(0.02));
+    CHECK(coarse_mean == Approx(own_mean).epsilon(0.01));
+    const Raster coarse = io::read_raster(temp / "coarse/elevation.tif").raster;
+    CHECK(std::max(coarse.grid.rows, coarse.grid.cols) == 150);
+}
+
 TEST_CASE("Keys that contradict each other are refused before the simulation begins") {
     const TempFolder temp;
     const auto refused = [&](auto change) {

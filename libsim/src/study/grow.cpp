@@ -143,7 +143,7 @@ Json write_terrain(const Experiment& e, const GrownTerrain& t, const std::filesy
         const Point& origin = t.growth.network.origin;
         for (double& x : surface.x) x += origin.x - local.origin.x * t.site.unit_m;
         for (double& y : surface.y) y += origin.y - local.origin.y * t.site.unit_m;
-        return surface;
+        return PlacedSurface{std::move(surface), local};
     };
     const double extent = std::max(z.grid.rows, z.grid.cols) * z.grid.east_west[0];
     return write_terrain_files(z, {.files = mesh_files(e), .surface = own, .extent_m = extent}, e, folder);

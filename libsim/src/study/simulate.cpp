@@ -269,7 +269,7 @@ std::string run(const Topology& topology, const Experiment& e, Domain& domain, d
     const Heightfield h = heightfield(topology, domain, finished, e);
     const auto basins = static_cast<Index>(finished.statistics.basins.size());
     add_perimeters(terrain::basin_perimeters(h.elevation.grid, h.basin_of, basins), finished.statistics);
-    const PositionOf position = map_positions(domain, h.elevation);
+    const PositionOf position = map_positions(domain);
     write_results(h, finished, outcome, position, e, folder);
     const Json terrain_files = write_terrain_files(topology, domain, h, finished, e, folder);
     write_text(folder / "experiment.toml", to_toml(e));

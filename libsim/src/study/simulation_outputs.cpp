@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "thalweg/core/error.hpp"
+#include "thalweg/io/geodesy.hpp"
+#include "thalweg/io/image_file.hpp"
 #include "thalweg/io/polygonize.hpp"
 #include "thalweg/io/raster_file.hpp"
 #include "thalweg/io/table_file.hpp"
@@ -99,6 +101,45 @@ Raster interpolated(const Mesh& mesh, const std::vector<double>& elevation_m, co
     return raster;
 }
 
+/// A grid of `resolution` cells along the longer side over the same ground, square in the map's units, from the same
+/// north-west corner.
+Raster covering_cells(const Raster& cells, Index resolution) {
+    const Placement& old = cells.placement;
+    const double width = cells.grid.cols * old.cell_width, height = cells.grid.rows * old.cell_height;
+    Raster cover{{}, old, {}};
+    const double size = std::max(width, height) / resolution;
+    const auto count = [&](double side) { return static_cast<Index>(std::ceil(side / size - 1e-9)); };
+    cover.placement.cell_width = cover.placement.cell_height = size;
+    const Index rows = count(height), cols = count(width);
+    cover.grid = old.geographic ? io::geographic_grid(rows, cols, old.north, size, size)
+                                : plane_grid(rows, cols, cells.grid.east_west[0] * size / old.cell_width,
+                                             cells.grid.north_south[0] * size / old.cell_height);
+    return cover;
+}
+
+/// Bilinear between the centres of the cells, no data in cells without.
+Raster resampled(const Raster& cells, Index resolution) {
+    Raster cover = covering_cells(cells, resolution);
+    const io::Image image{.rows = cells.grid.rows, .cols = cells.grid.cols, .values = cells.values};
+    const double across = cover.placement.cell_width / cells.placement.cell_width;
+    const double down = cover.placement.cell_height / cells.placement.cell_height;
+    for (Index node = 0; node < cover.grid.size(); ++node) {
+        const double column = (cover.grid.col(node) + 0.5) * across, row = (cover.grid.row(node) + 0.5) * down;
+        cover.values.push_back(io::bilinear(image, column, row));
+    }
+    return cover;
+}
+
+/// The cell that holds the centre of each cell of another grid over it; `none` outside, and where that one has no data.
+std::vector<Index> cells_under(const Raster& cover, const Raster& cells) {
+    std::vector<Index> under(cover.grid.size());
+    for (Index node = 0; node < cover.grid.size(); ++node) {
+        under[node] = cell_at(cells, cover.placement.center(cover.grid.row(node), cover.grid.col(node)));
+        if (std::isnan(cover.values[node])) under[node] = none;
+    }
+    return under;
+}
+
 /// From that plane to the map.
 void put_on_map(const Domain& domain, Placement& place) {
     place.crs_wkt = domain.placement.crs_wkt;
@@ -111,8 +152,9 @@ void put_on_map(const Domain& domain, Placement& place) {
 }  // namespace
 
 Raster elevation_raster(const Grid& grid, const Domain& domain, const std::vector<double>& elevation_m,
-                        const Experiment&) {
-    return {grid, domain.placement, elevation_m};
+                        const Experiment& e) {
+    Raster cells{grid, domain.placement, elevation_m};
+    return e.output.resolution ? resampled(cells, *e.output.resolution) : cells;
 }
 
 Raster elevation_raster(const Mesh& mesh, const Domain& domain, const std::vector<double>& elevation_m,
@@ -124,7 +166,12 @@ Raster elevation_raster(const Mesh& mesh, const Domain& domain, const std::vecto
 
 Heightfield heightfield(const Grid& grid, const Domain& domain, const Finished& f, const Experiment& e) {
     if (e.output.resolution) {
-        throw Error("output.resolution does not apply to a raster mesh: it is written at its own cells");
+        const Raster cells{grid, domain.placement, f.terrain.elevation_m};
+        Heightfield h{.elevation = resampled(cells, *e.output.resolution)};
+        const std::vector<Index> node = cells_under(h.elevation, cells);
+        h.drainage_area_m2 = pick(f.law_area_m2, node, nan);
+        h.basin_of = pick(f.statistics.basin_of, node, none);
+        return h;
     }
     Heightfield h{{grid, domain.placement, f.terrain.elevation_m}, f.law_area_m2, f.statistics.basin_of};
     for (Index node = 0; node < grid.size(); ++node) {
@@ -143,8 +190,8 @@ Heightfield heightfield(const Mesh& mesh, const Domain& domain, const Finished& 
     return h;
 }
 
-PositionOf map_positions(const Domain& domain, const Raster& elevation) {
-    if (std::holds_alternative<Grid>(domain.topology)) return positions(elevation);
+PositionOf map_positions(const Domain& domain) {
+    if (const Grid* grid = std::get_if<Grid>(&domain.topology)) return positions(Raster{*grid, domain.placement, {}});
     return [&domain](Index node) {
         return Point{domain.positions_m[node].x / domain.unit_m, domain.positions_m[node].y / domain.unit_m};
     };
@@ -158,8 +205,7 @@ void write_results(const Heightfield& h, const Finished& f, const Outcome& o, co
                      layer(experiment, "drainage area of the nearest node (m2)"));
     const Statistics& s = f.statistics;
     auto outlines = io::cell_outlines(e, h.basin_of, static_cast<Index>(s.basins.size()));
-    io::write_geopackage(folder / "network.gpkg",
-                         network_layers(s, position, std::move(outlines)),
+    io::write_geopackage(folder / "network.gpkg", network_layers(s, position, std::move(outlines)),
                          e.placement.crs_wkt);
     io::write_csv(folder / "slope_area_nodes.csv", node_table(f));
     write_statistics(s, position, folder);

@@ -58,7 +58,7 @@ Raster elevation_raster(const Grid&, const Domain&, const std::vector<double>& e
 Raster elevation_raster(const Mesh&, const Domain&, const std::vector<double>& elevation_m, const Experiment&);
 
 /// Map coordinates of the nodes; refers to the domain.
-PositionOf map_positions(const Domain&, const Raster& elevation);
+PositionOf map_positions(const Domain&);
 
 /// GeoTIFFs, GeoPackage and CSVs of a finished simulation.
 void write_results(const Heightfield&, const Finished&, const Outcome&, const PositionOf&, const Experiment&,

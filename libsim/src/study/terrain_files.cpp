@@ -78,9 +78,9 @@ Json write_terrain_files(const Raster& elevation, const OwnMesh& own, const Expe
     const LocalMetres local = local_metres(elevation);
     keys["meshes"] = Json::array();
     if (!own.files.empty()) {
-        const TriangleSurface surface = own.surface(local);
+        const PlacedSurface nodes = own.surface(local);
         for (const MeshFile file : own.files) {
-            keys["meshes"].push_back(write_surface(folder, "mesh", file, surface, local, e, own.extent_m));
+            keys["meshes"].push_back(write_surface(folder, "mesh", file, nodes.surface, nodes.local, e, own.extent_m));
         }
     }
     if (e.output.heightfield_mesh_file) {
@@ -93,14 +93,13 @@ Json write_terrain_files(const Raster& elevation, const OwnMesh& own, const Expe
 
 Json write_terrain_files(const Grid& grid, const Domain& domain, const Heightfield& h, const Finished& f,
                          const Experiment& e, const fs::path& folder) {
-    return write_terrain_files(h.elevation,
-                               {.files = files_of(e),
-                                .surface =
-                                    [&](const LocalMetres& local) {
-                                        return surface::triangle_surface(grid, local.centers, f.terrain.elevation_m);
-                                    },
-                                .extent_m = domain.extent_m},
-                               e, folder);
+    const auto own = [&](const LocalMetres&) {
+        // Its own cells, which the heightfield's need not be (output.resolution).
+        LocalMetres local = local_metres(Raster{grid, domain.placement, f.terrain.elevation_m});
+        return PlacedSurface{surface::triangle_surface(grid, local.centers, f.terrain.elevation_m), local};
+    };
+    return write_terrain_files(h.elevation, {.files = files_of(e), .surface = own, .extent_m = domain.extent_m}, e,
+                               folder);
 }
 
 Json write_terrain_files(const Mesh& mesh, const Domain& domain, const Heightfield& h, const Finished& f,
@@ -109,7 +108,7 @@ Json write_terrain_files(const Mesh& mesh, const Domain& domain, const Heightfie
         TriangleSurface surface = surface::triangle_surface(mesh, f.terrain.elevation_m);
         for (double& x : surface.x) x -= local.origin.x * domain.unit_m;
         for (double& y : surface.y) y -= local.origin.y * domain.unit_m;
-        return surface;
+        return PlacedSurface{surface, local};
     };
     return write_terrain_files(h.elevation, {.files = files_of(e), .surface = own, .extent_m = domain.extent_m}, e,
                                folder);

@@ -13,10 +13,17 @@ namespace thalweg::study {
 /// Throws Error where output keys contradict each other: before a long run, not after it.
 void check_terrain_files(const Experiment&);
 
-/// A terrain's own triangles, and the files that they go into: none, or mesh.obj and mesh.ply.
+/// A surface and where its zero lies on the map.
+struct PlacedSurface {
+    TriangleSurface surface;
+    LocalMetres local;
+};
+
+/// A terrain's own triangles, made given where the heightfield's zero lies, and the files that they go into: none, or
+/// mesh.obj and mesh.ply.
 struct OwnMesh {
     std::vector<MeshFile> files;
-    std::function<TriangleSurface(const LocalMetres&)> surface;
+    std::function<PlacedSurface(const LocalMetres&)> surface;
     double extent_m;  ///< longer side of the terrain
 };
 

@@ -351,7 +351,7 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"time.max_steps", "", "most steps (or sweeps of the steady solver)", 1, 1e9}, e.time.max_steps);
     visit(Field{"time.convergence", "", "stop when the mean rate is below this share of the mean uplift; 0: never", 0},
           e.time.convergence);
-    visit(Field{"output.resolution", "", "cells along the longer side of a TIN's heightfield; default 512", 2, 100000},
+    visit(Field{"output.resolution", "", "cells along the longer side of the heightfield; default 512 of a TIN, a raster mesh's own cells", 2, 100000},
           e.output.resolution);
     visit(Field{"output.interpolation", "",
                 "how a TIN becomes a heightfield: smoothed, linear in its triangles, or by natural neighbours"},
