@@ -20,7 +20,7 @@ sys.path[:0] = [HERE, os.path.join(HERE, "..", "tools", "figures")]
 import harness  # noqa: E402
 import style  # noqa: E402
 
-PAPERS = ("bell_2024", "braun_willett_2013", "cordonnier_2016")
+PAPERS = ("bell_2024", "braun_willett_2013", "cordonnier_2016", "kelley_1988")
 
 
 def load(name, root=HERE):

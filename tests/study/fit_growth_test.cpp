@@ -33,7 +33,7 @@ std::string text_of(const fs::path& file) {
 
 TEST_CASE("A fit of growth writes a basin and dials that read back as they were found") {
     const TempFolder folder;
-    const Json fit = Json::parse(fit_growth(jacksboro, {}, folder / ".", {}));
+    const Json fit = Json::parse(fit_growth(jacksboro, {}, folder / "", {}));
     const Experiment e = read_experiment(folder / "growth.toml");
     const GrowthSite site = growth_site(e, {});
     const GrowthSite own = growth_site(largest_complete_catchment(read_dem(jacksboro, {}, {}).raster, {}));

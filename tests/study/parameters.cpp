@@ -2,6 +2,7 @@
 #include "thalweg/study/parameters.hpp"
 
 #include <catch2/catch.hpp>
+#include <fstream>
 
 #include "support/temp_folder.hpp"
 #include "thalweg/study/growth_site.hpp"
@@ -284,4 +285,19 @@ TEST_CASE("A basin or a dial that cannot be is refused by its name") {
     refused("[growth]\nchannel_maintenance_m = 0",
             "growth.channel_maintenance_m must be above 0 and at most 1000000000, not 0");
     CHECK_THAT(error_of([] { dials_of({}); }), Catch::StartsWith("growth.channel_maintenance_m is needed"));
+}
+
+TEST_CASE("A study's models are one word or a list of different ones") {
+    const auto models = [](const char* value) {
+        const TempFolder folder;
+        std::ofstream(folder / "a.toml") << "[study]\nmodels = " << value << "\n";
+        return read_experiment(folder / "a.toml").study.models;
+    };
+    using enum StudyModel;
+    CHECK(models("\"growth\"") == std::vector{growth});
+    CHECK(models("[\"growth\", \"stream-power\"]") == std::vector{stream_power, growth});
+    CHECK(Experiment{}.study.models == std::vector{stream_power});
+    CHECK(error_of([&] { models("[]"); }).find("study.models") != std::string::npos);
+    CHECK(error_of([&] { models("[\"growth\", \"growth\"]"); }).find("twice") != std::string::npos);
+    CHECK(error_of([&] { models("[\"ice\"]"); }).find("stream-power") != std::string::npos);
 }

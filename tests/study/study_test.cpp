@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "support/temp_folder.hpp"
@@ -320,4 +321,30 @@ TEST_CASE("Experiments that contradict themselves are refused with a sentence") 
     CHECK(error_of([&] { run_study(study, Figures::leave_out, temp / "", {}); }).find("exclude") != std::string::npos);
     study.study.source.reset();
     CHECK(error_of([&] { run_study(study, Figures::leave_out, temp / "", {}); }).find("uplift") != std::string::npos);
+}
+
+TEST_CASE("A study by growth alone needs no uplift rate, and its grown terrain lies in the studied basin") {
+    const TempFolder folder;
+    Experiment e;
+    e.study.dem = std::filesystem::path(THALWEG_SOURCE_DIR) / "validation/data/jacksboro.tif";
+    CHECK_THROWS_AS(run_study(e, Figures::leave_out, folder / "", {}), Error);
+    e.study.models = {StudyModel::growth};
+    const Json manifest = Json::parse(run_study(e, Figures::leave_out, folder / "", {}));
+    CHECK(manifest["steps"] == Json{"measure", "basin", "growth_fit", "grow", "grown", "compare_grown"});
+    const auto read = [&](const char* file) {
+        std::ifstream stream(folder / file);
+        return Json::parse(stream);
+    };
+    const Json basin = read("basin/summary.json"), grown = read("grown/summary.json");
+    const auto number = [](const Json& summary, const char* path) {
+        return summary[Json::json_pointer(path)].get<double>();
+    };
+    CHECK(number(grown, "/input/area_m2") == Approx(number(basin, "/input/area_m2")).epsilon(0.01));
+    CHECK(number(grown, "/input/dx_m") * number(grown, "/input/dy_m") ==
+          Approx(number(basin, "/input/dx_m") * number(basin, "/input/dy_m")).epsilon(0.02));
+    CHECK(number(grown, "/channels/threshold_area_m2") == number(basin, "/channels/threshold_area_m2"));
+    CHECK(number(grown, "/channels/total_length_m") == Approx(number(basin, "/channels/total_length_m")).epsilon(0.25));
+    CHECK(read("compare_grown/comparison.json")["aspects"].size() > 5);
+    CHECK_FALSE(std::filesystem::exists(folder / "simulate"));
+    for (const Json& output : manifest["outputs"]) CHECK(output["file"] != "grow/summary.json");
 }

@@ -8,6 +8,7 @@ from html import escape
 
 import curves
 import glossary
+import growth
 import maps
 import style
 import summary_text
@@ -18,6 +19,7 @@ from words import DASH, Footnotes, fixed, height_decimals, interval, number, pla
 HERE = os.path.dirname(os.path.realpath(__file__))
 REAL = '<span class="real">real</span>'
 SYNTHETIC = '<span class="synthetic">synthetic</span>'
+GROWN = '<span class="grown">grown</span>'
 
 
 def page(folder):
@@ -25,12 +27,7 @@ def page(folder):
     study = Study(folder)
     with open(os.path.join(HERE, "report.css"), encoding="utf-8") as stream:
         css = stream.read()
-    sections = [("terrain", "The two terrains", terrains), ("slopes", "Slope and drainage area", slopes),
-                ("shape", "Hypsometry and network", shape), ("numbers", "Numbers side by side", numbers),
-                ("fit", "The fit", fit), ("comparison", "How far apart", comparison),
-                ("run", "The simulation", simulation), ("notes", "Notes and warnings", notes),
-                ("glossary", "What the numbers mean", lambda _: glossary.html()),
-                ("provenance", "Provenance", provenance)]
+    sections = sections_of(study)
     body = [f'<section id="{key}"><h2><span class="no">{i}</span>{title}</h2>{build(study)}</section>'
             for i, (key, title, build) in enumerate(sections, 1)]
     links = "".join(f'<a href="#{key}">{title}</a>' for key, title, _ in sections)
@@ -40,11 +37,27 @@ def page(folder):
             f'{header(study, links)}{"".join(body)}</main></body></html>\n')
 
 
+def sections_of(study):
+    """What the study has: an erosion law fitted and simulated, a network grown, or both."""
+    sections = [("terrain", "The two terrains", terrains), ("slopes", "Slope and drainage area", slopes),
+                ("shape", "Hypsometry and network", shape), ("numbers", "Numbers side by side", numbers),
+                ("fit", "The fit", fit), ("comparison", "How far apart", comparison),
+                ("run", "The simulation", simulation), ("notes", "Notes and warnings", notes),
+                ("glossary", "What the numbers mean", lambda _: glossary.html()),
+                ("provenance", "Provenance", provenance)]
+    if study.grown_alone:
+        sections = [each for each in sections if each[0] not in ("fit", "run")]
+    if study.growth_fit:
+        place = next(i for i, each in enumerate(sections) if each[0] == "notes")
+        sections.insert(place, ("growth", "The grown network", grown))
+    return sections
+
+
 def header(study, links):
     version = get(study.manifest, "version")
     program = "Thalweg" + (f" {escape(str(version))}" if version else "")
     return (f'<header><p class="kicker">{program} · study report</p>'
-            f"<h1>{escape(study.name())}: a real terrain and its stream-power twin</h1>"
+            f"<h1>{escape(study.name())}: a real terrain and its {'grown' if study.grown_alone else 'stream-power'} twin</h1>"
             f"<nav>{links}</nav></header>"
             f'<p class="lead">{summary_text.sentences(study)}</p>{summary_text.headline(study)}')
 
@@ -59,7 +72,7 @@ def picture(content, kind, alt, caption, css=""):
 def terrains(study):
     whole = (study.step("measure/filled.tif"), study.step("measure/network.gpkg"))
     real = (whole[0], study.step(f"{study.real_step}/network.gpkg"), "Real")
-    synthetic = (study.step("simulate/elevation.tif"), study.step(f"{study.synthetic_step}/network.gpkg"), "Synthetic")
+    synthetic = (study.synthetic_raster(), study.step(f"{study.synthetic_step}/network.gpkg"), "Synthetic")
     overview, lowest = maps.single(*whole, studied=real[1] if study.real_step == "basin" else None)
     both = maps.pair(real, synthetic)
     threshold = plain(get(study.measure, "channels.threshold_area_m2", 0) / 1e6)
@@ -170,7 +183,8 @@ OPTIONAL = ("More of the network",)  # shown only where measured
 def numbers(study):
     footnotes, rows = Footnotes(), []
     optional = False
-    reliefs = [each[2] for each in map(study.relief, (0, 1)) if each]
+    which_sides = range(len(study.all_sides()))
+    reliefs = [each[2] for each in map(study.relief, which_sides) if each]
     decimals = height_decimals(max(reliefs, default=0))
     for row in ROWS:
         if len(row) == 1:
@@ -178,17 +192,18 @@ def numbers(study):
             rows.append(list(row))
             continue
         label, factor, unit, digits, *paths = row
-        found = [_found(study, which, paths) for which in (0, 1)]
+        found = [_found(study, which, paths) for which in which_sides]
         if digits == HEIGHT:
             rows.append([label, *(DASH + footnotes.mark(why) if value is None else fixed(value, decimals)
                                   for value, why in found), unit])
             continue
-        if optional and found[0][0] is None and found[1][0] is None:
+        if optional and all(value is None for value, _ in found):
             continue
         rows.append([label, *(_cell(value, factor, digits, why, footnotes) for value, why in found), unit or DASH])
     rows = [row for i, row in enumerate(rows) if len(row) > 1 or (i + 1 < len(rows) and len(rows[i + 1]) > 1)]
-    covers = f"<p>Both sides were measured by the same code. The real one covers {_coverage(study)}.</p>"
-    return covers + table(["", REAL, SYNTHETIC, "unit"], rows, "numbers-table") + footnotes.html()
+    covers = f"<p>{'All' if study.grown else 'Both'} sides were measured by the same code. The real one covers {_coverage(study)}.</p>"
+    names = [REAL, SYNTHETIC] + ([GROWN] if study.grown else [])
+    return covers + table(["", *names, "unit"], rows, "numbers-table") + footnotes.html()
 
 
 def _found(study, which, paths):
@@ -336,6 +351,53 @@ def simulation(study):
     return words + picture(style.svg(curves.history(study.history)), "svg+xml",
                            "Highest and mean elevation, and the largest rate of change, against time.",
                            "<b>Figure 6.</b> The simulated terrain on its way: elevation, and how fast it still changes.")
+
+
+def grown(study):
+    """What a network grown by empirical rules has in common with the real one."""
+    words = (f"<p>A network was grown in the basin by the rules of Kelley, Malin &amp; Nielson (1988): "
+             f"{show(study.grow.get('links'))} links, with dials found by growing networks until they measure like the real "
+             "one; the surface under tension over it was measured like any DEM.</p>")
+    pictures = _grown_pictures(study) if study.grown else ""
+    check = picture(style.svg(growth.check(study.growth_fit)), "svg+xml",
+                    "Measures of grown networks over those of the real one, with their spread.",
+                    f"<b>Figure {10 if study.grown else 6}.</b> What networks grown with these dials measure, over what the real one measures. Where a "
+                    "bar misses the line, the rules of growth do not make such networks, whatever the dials.", "medium")
+    return words + pictures + check + _dials(study) + _grown_comparison(study)
+
+
+def _grown_pictures(study):
+    real = (study.step("measure/filled.tif"), study.step(f"{study.real_step}/network.gpkg"), "Real")
+    beside = (study.step("grow/elevation.tif"), study.step("grown/network.gpkg"), "Grown")
+    names = "real, stream-power and grown"
+    return (picture(style.png(maps.pair(real, beside), palette=True), "png",
+                    "Shaded relief maps of the real and of the grown terrain, with their rivers.",
+                    "<b>Figure 7.</b> Real and grown terrain, as in Figure 1.")
+            + picture(style.svg(curves.hypsometry(study.all_sides())), "svg+xml", f"Hypsometric curves: {names}.",
+                      f"<b>Figure 8.</b> Hypsometric curves: {names}.", "narrow")
+            + picture(style.svg(curves.horton(study.all_sides())), "svg+xml", f"Horton plots: {names}.",
+                      f"<b>Figure 9.</b> Horton’s laws: {names}.", "medium"))
+
+
+def _dials(study):
+    rows = []
+    for name, dial in (study.growth_fit.get("growth") or {}).items():
+        open_words = "" if dial.get("identified") else " (left open by the network)"
+        rows.append([f"<code>{escape(name)}</code>{open_words}", show(dial.get("estimate"), 4),
+                     number(dial.get("standard_error"), 2), interval(dial.get("ci95"), 3) or DASH, show(dial.get("count"))])
+    return table(["dial", "value", "standard error", "95 % interval", "measured on"], rows)
+
+
+def _grown_comparison(study):
+    """Both models' distances from the real terrain; where growth stands alone, section "How far apart" has them."""
+    if not study.grown:
+        return ""
+    eroded = {aspect["name"]: aspect for aspect in study.comparison.get("aspects") or []}
+    rows = [[escape(ASPECTS.get(aspect["name"], aspect["name"].replace("_", " ").capitalize())),
+             show(eroded.get(aspect["name"], {}).get("distance")), show(aspect.get("distance"))]
+            for aspect in study.grown_comparison.get("aspects") or []]
+    return ("<p>Distances from the real terrain, defined as in the section <i>How far apart</i>; smaller is closer.</p>"
+            + table(["aspect", SYNTHETIC, GROWN], rows))
 
 
 def notes(study):

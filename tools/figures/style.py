@@ -20,6 +20,7 @@ MUTED = "#6c737c"
 GRID = "#dfe3e7"
 REAL = "#0072B2"
 SYNTHETIC = "#D55E00"
+GROWN = "#009E73"
 THEORY = "#26292e"
 RIVER = "#124e96"
 DIVIDE = "#3d3a36"
@@ -27,6 +28,7 @@ DIVIDE = "#3d3a36"
 LOOK = {
     "real": {"color": REAL, "marker": "o", "linestyle": "-"},
     "synthetic": {"color": SYNTHETIC, "marker": "^", "linestyle": (0, (5, 1.6))},
+    "grown": {"color": GROWN, "marker": "s", "linestyle": (0, (1.2, 1.2))},
 }
 
 #: Lightness rises with height, so that the tint also reads in grey; pale, so that the shading carries the relief.

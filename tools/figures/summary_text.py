@@ -61,6 +61,8 @@ def _span(low, high):
 def compared(study):
     nodes = study.simulate.get("nodes")
     text = "A stream-power landscape" + (f" of {number(nodes)} nodes" if nodes is not None else "") + " grown with these values"
+    if study.grown_alone:
+        text = f"A network of {number(study.grow.get('links'))} links grown there with measured dials, and the surface over it,"
     pairs = []
     for label, path, digits in (("a hypsometric integral of", "hypsometry.integral", 3),
                                 ("a concavity θ by regression of", "slope_area.theta", 3),

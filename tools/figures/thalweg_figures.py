@@ -91,7 +91,8 @@ def write(path, content):
 
 
 #: What is drawn of a study, slowest first: the whole DEM and the synthetic raster are seen in the report alone.
-STEPS = (("report", ""), ("simulate", "simulate"), ("analyze", "basin"), ("compare", "compare"), ("fit", "fit"))
+STEPS = (("report", ""), ("simulate", "simulate"), ("analyze", "basin"), ("compare", "compare"), ("fit", "fit"),
+         ("fit", "growth_fit"))
 
 
 def run_study(folder):

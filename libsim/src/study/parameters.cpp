@@ -195,6 +195,18 @@ class Reader {
         for (std::size_t i = 0; i < member.size(); ++i) read(field, array == nullptr ? node : (*array)[i], member[i]);
     }
 
+    /// One word or a list of different ones.
+    void read(const Field& field, const toml::node& node, std::vector<StudyModel>& member) const {
+        const toml::array* array = node.as_array();
+        member.assign(array == nullptr ? 1 : array->size(), StudyModel::stream_power);
+        for (std::size_t i = 0; i < member.size(); ++i) read(field, array == nullptr ? node : (*array)[i], member[i]);
+        if (member.empty()) throw Error(fmt::format("{} must name one model at least", field.key));
+        std::ranges::sort(member);
+        if (std::ranges::adjacent_find(member) != member.end()) {
+            throw Error(fmt::format("{} names a model twice: {}", field.key, quoted(node)));
+        }
+    }
+
     /// One number, or as many as there are; `domain.size_m` is a pair.
     void read_numbers(const Field& field, const toml::node& node, std::vector<double>& member) const {
         const toml::array* array = node.as_array();
@@ -301,6 +313,11 @@ std::string shown(const Shape& shape) {
     }
     return fmt::format("[{}]", text);
 }
+std::string shown(const std::vector<StudyModel>& models) {
+    std::string text;
+    for (const StudyModel model : models) text += (text.empty() ? "" : ", ") + shown(model);
+    return fmt::format("[{}]", text);
+}
 std::string shown(const Outlets& outlets) {
     switch (outlets.rule) {
         case OutletRule::all:
@@ -374,6 +391,10 @@ const Words<HeightmapFile>& words(HeightmapFile) {
 }
 const Words<MeshFile>& words(MeshFile) {
     static const Words<MeshFile> all{{"obj", MeshFile::obj}, {"ply", MeshFile::ply}};
+    return all;
+}
+const Words<StudyModel>& words(StudyModel) {
+    static const Words<StudyModel> all{{"stream-power", StudyModel::stream_power}, {"growth", StudyModel::growth}};
     return all;
 }
 const Words<FitMethod>& words(FitMethod) {

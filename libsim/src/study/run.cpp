@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "study/report_json.hpp"
+#include "study/run_growth.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/study/compare.hpp"
 #include "thalweg/study/fetch.hpp"
@@ -45,9 +46,13 @@ Experiment fitted_experiment(const Experiment& study, const fs::path& dem, const
     return e;
 }
 
+bool explains_by(const Experiment& e, StudyModel model) {
+    return std::ranges::find(e.study.models, model) != e.study.models.end();
+}
+
 /// What the study's own experiment.toml says: the uplift that is simulated is the study's.
 Experiment resolved(Experiment e) {
-    e.uplift.rate_m_per_yr = *e.study.uplift_m_per_yr;
+    if (e.study.uplift_m_per_yr) e.uplift.rate_m_per_yr = *e.study.uplift_m_per_yr;
     return e;
 }
 
@@ -81,7 +86,8 @@ Json checksums(const fs::path& folder) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
         const std::string name = fs::relative(entry.path(), folder).generic_string();
-        const bool timed = name == "simulate/summary.json" || name == "simulate/history.csv";
+        const bool timed =
+            name == "simulate/summary.json" || name == "simulate/history.csv" || name == "grow/summary.json";
         if (entry.is_regular_file() && !timed) files.push_back(fs::relative(entry.path(), folder));
     }
     std::sort(files.begin(), files.end());
@@ -98,8 +104,14 @@ Json manifest_json(const Experiment& e, const NamedRaster& dem, const fs::path& 
     for (const auto& [name, version] : v.libraries) libraries[name] = version;
     Json input{{"file", dem.file}, {"sha256", dem.sha256}, {"crs", dem.crs_name}};
     if (dem.origin) input["provenance"] = origin_json(*dem.origin);
-    Json steps{"measure", "basin", "fit", "simulate", "synthetic", "compare"};
+    std::vector<std::string> steps{"measure", "basin"};
     if (e.study.source) steps.insert(steps.begin(), "fetch");
+    if (explains_by(e, StudyModel::stream_power)) {
+        steps.insert(steps.end(), {"fit", "simulate", "synthetic", "compare"});
+    }
+    if (explains_by(e, StudyModel::growth)) {
+        steps.insert(steps.end(), {"growth_fit", "grow", "grown", "compare_grown"});
+    }
     return {{"program", "thalweg"},
             {"version", v.thalweg},
             {"commit", v.commit},
@@ -128,6 +140,24 @@ fs::path dem_of(const Experiment& e, const fs::path& folder, const Messages& mes
     return fetch_dem(*e.study.source, *e.study.bbox, step_folder(folder, "fetch"));
 }
 
+/// The basin that a study explains, and by which options it was measured.
+struct StudiedBasin {
+    const Experiment& experiment;
+    fs::path dem;  ///< relative to the study's folder
+    const Catchment& catchment;
+    const MeasureOptions& options;
+};
+
+void run_erosion_steps(const StudiedBasin& b, const fs::path& folder, const Messages& messages) {
+    const FitOutcome fitted = fit(folder / "basin", fit_options(b.experiment), step_folder(folder, "fit"), messages);
+    simulate(fitted_experiment(b.experiment, b.dem, fitted.fit), b.catchment, step_folder(folder, "simulate"),
+             messages);
+    const NamedRaster synthetic = read_dem(folder / "simulate/elevation.tif", {}, {});
+    analyze(synthetic, b.options, step_folder(folder, "synthetic"), messages);
+    compare(folder / "basin", folder / "synthetic", {}, step_folder(folder, "compare"), messages);
+    warn_of_relief(folder, messages);
+}
+
 void draw_all(const fs::path& folder, const Messages& messages) {
     messages.progress("drawing");
     draw_figures("study", folder);
@@ -141,7 +171,7 @@ std::string run_study(const Experiment& e, Figures figures, const fs::path& fold
         throw Error(
             "output.checkpoint_every is for thalweg simulate alone: what goes on with --resume is one simulation");
     }
-    if (!e.study.uplift_m_per_yr) {
+    if (explains_by(e, StudyModel::stream_power) && !e.study.uplift_m_per_yr) {
         throw Error("study.uplift_m_per_yr is needed: slopes alone tell only k/u, and a simulation needs both");
     }
     const auto start = std::chrono::steady_clock::now();
@@ -158,15 +188,11 @@ std::string run_study(const Experiment& e, Figures figures, const fs::path& fold
     NamedRaster basin{catchment.raster, dem.file, dem.sha256, dem.crs_name, {}, dem.origin};
     analyze(basin, options, step_folder(folder, "basin"), messages);
 
-    const FitOutcome fitted = fit(folder / "basin", fit_options(e), step_folder(folder, "fit"), messages);
-    simulate(fitted_experiment(e, fs::relative(dem_file, folder), fitted.fit), catchment,
-             step_folder(folder, "simulate"), messages);
+    if (explains_by(e, StudyModel::stream_power)) {
+        run_erosion_steps({e, fs::relative(dem_file, folder), catchment, options}, folder, messages);
+    }
+    if (explains_by(e, StudyModel::growth)) run_growth_steps(e, catchment, options, folder, messages);
 
-    const NamedRaster synthetic = read_dem(folder / "simulate/elevation.tif", {}, {});
-    analyze(synthetic, options, step_folder(folder, "synthetic"), messages);
-    compare(folder / "basin", folder / "synthetic", {}, step_folder(folder, "compare"), messages);
-
-    warn_of_relief(folder, messages);
     Json manifest = manifest_json(e, dem, folder);
     write_text(folder / "manifest.json", text_of(manifest));
     if (figures == Figures::draw) draw_all(folder, messages);

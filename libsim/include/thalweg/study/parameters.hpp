@@ -35,6 +35,7 @@ enum class GeotiffKind { tiled, cog };
 enum class HeightmapFile { png };
 enum class MeshFile { obj, ply };
 enum class FitMethod { slope_area };
+enum class StudyModel { stream_power, growth };
 
 /// Which nodes of the rim are outlets.
 struct Outlets {
@@ -156,6 +157,7 @@ struct Experiment {
         std::optional<double> uplift_m_per_yr;
         double uplift_sd_m_per_yr = 0;
         FitMethod method = FitMethod::slope_area;
+        std::vector<StudyModel> models{StudyModel::stream_power};
         std::optional<double> channel_area_m2;
         std::optional<double> area_min_m2;
         std::optional<double> area_max_m2;
@@ -187,6 +189,7 @@ const Words<GeotiffKind>& words(GeotiffKind);
 const Words<HeightmapFile>& words(HeightmapFile);
 const Words<MeshFile>& words(MeshFile);
 const Words<FitMethod>& words(FitMethod);
+const Words<StudyModel>& words(StudyModel);
 const Words<grow::Stop>& words(grow::Stop);
 const Words<grow::UpstreamLink>& words(grow::UpstreamLink);
 const Words<grow::Thalweg>& words(grow::Thalweg);
@@ -386,10 +389,12 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"study.crs", "", "coordinate system to use instead of the DEM's, e.g. EPSG:32611"}, e.study.crs);
     visit(Field{"study.nodata", "m", "value to be taken as no data, besides what the DEM declares"}, e.study.nodata);
     visit(Field{"study.uplift_m_per_yr", "m/yr",
-                "uplift rate of the real landscape (k cannot be told without); a study needs it", 0, infinity, true},
+                "uplift rate of the real landscape (k cannot be told without); a study by stream-power needs it", 0, infinity, true},
           e.study.uplift_m_per_yr);
     visit(Field{"study.uplift_sd_m_per_yr", "m/yr", "standard deviation of that rate", 0}, e.study.uplift_sd_m_per_yr);
     visit(Field{"study.method", "", "what is matched"}, e.study.method);
+    visit(Field{"study.models", "", "what explains the DEM: stream-power erosion, network growth, or a list of both"},
+          e.study.models);
     visit(Field{"study.channel_area_m2", "m2",
                 "drainage area where channels begin; default: 0.1 % of the studied basin, at least 50 cells, rounded "
                 "to 1-2-5",

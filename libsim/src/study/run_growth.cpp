@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/run_growth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "thalweg/study/compare.hpp"
+#include "thalweg/study/fit_growth.hpp"
+#include "thalweg/study/grow.hpp"
+
+namespace thalweg::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path step_folder(const fs::path& study, const char* step) {
+    fs::create_directory(study / step);
+    return study / step;
+}
+
+/// Cells along the longer side of the basin's outline, as large as the DEM's.
+Index resolution_like(const Raster& raster, const grow::Basin& basin) {
+    const auto cells = std::ranges::count_if(raster.values, [](double z) { return !std::isnan(z); });
+    const double cell_m = std::sqrt(data_area(raster) / static_cast<double>(cells));
+    const auto [west, east] = std::ranges::minmax_element(basin.outline, {}, &Point::x);
+    const auto [south, north] = std::ranges::minmax_element(basin.outline, {}, &Point::y);
+    return static_cast<Index>(std::ceil(std::max(east->x - west->x, north->y - south->y) / cell_m));
+}
+
+/// What is not a dial is the study's: tensions, widths, roughness, formats.
+Experiment grown_experiment(const Experiment& study, const GrowthFit& fit, const Catchment& catchment) {
+    const Experiment found = growth_experiment(fit, "../growth_fit/basin.gpkg");
+    Experiment e = study;
+    e.basin = found.basin;
+    e.growth.channel_maintenance_m = found.growth.channel_maintenance_m;
+    const grow::Dials asked = study.growth.dials;
+    e.growth.dials = found.growth.dials;
+    e.growth.dials.stop = asked.stop;
+    e.growth.dials.upstream_link = asked.upstream_link;
+    if (!e.output.resolution) e.output.resolution = resolution_like(catchment.raster, fit.site.basin);
+    return e;
+}
+
+/// The cell with data whose centre is nearest to the outlet.
+Index outlet_cell(const Raster& raster, const GrowthSite& site) {
+    const Point outlet{site.basin.outlet.x / site.unit_m, site.basin.outlet.y / site.unit_m};
+    Index nearest = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (Index cell = 0; cell < raster.grid.size(); ++cell) {
+        if (std::isnan(raster.values[cell])) continue;
+        const Point center = raster.placement.center(raster.grid.row(cell), raster.grid.col(cell));
+        const double distance = std::hypot(center.x - outlet.x, center.y - outlet.y);
+        if (distance < least) {
+            nearest = cell;
+            least = distance;
+        }
+    }
+    return nearest;
+}
+
+}  // namespace
+
+void run_growth_steps(const Experiment& e, const Catchment& catchment, const MeasureOptions& options,
+                      const fs::path& study, const Messages& messages) {
+    messages.progress("growing networks to find the dials");
+    const GrowthFit fit = fit_growth(catchment, options, e.seed);
+    for (const std::string& warning : fit.site.warnings) messages.warning(warning);
+    write_growth_fit(fit, "raster", step_folder(study, "growth_fit"));
+    grow(grown_experiment(e, fit, catchment), catchment, step_folder(study, "grow"), messages);
+
+    const NamedRaster grown = read_dem(study / "grow/elevation.tif", {}, {});
+    MeasureOptions measuring = options;
+    measuring.catchment_outlet = outlet_cell(grown.raster, fit.site);
+    analyze(grown, measuring, step_folder(study, "grown"), messages);
+    compare(study / "basin", study / "grown", {}, step_folder(study, "compare_grown"), messages);
+}
+
+}  // namespace thalweg::study
