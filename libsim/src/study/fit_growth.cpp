@@ -27,19 +27,6 @@ Estimate scaled(const Estimate& e, double factor) {
     return {e.value * factor, e.standard_error * factor, {e.interval95[0] * factor, e.interval95[1] * factor}};
 }
 
-channel::GrowthMeasures measures_of(const Raster& raster, const RasterMeasurement& m) {
-    const channel::StreamNetwork& network = m.statistics.network;
-    const double reach_m = m.statistics.network_laws.junction_reach_m;
-    channel::GrowthMeasures measures = channel::growth_measures(
-        {.network = network,
-         .offset_m = m.terrain.offset_m,
-         .reach_m = reach_m,
-         .beyond_source_m = channel::beyond_sources(raster.grid, m.terrain.graph, network, reach_m),
-         .valley_sides = channel::valley_sides(raster.grid, m.terrain.graph, m.terrain.elevation_m, network)});
-    measures.channel_maintenance_m = scaled(measures.channel_maintenance_m, d8_length_factor);
-    return measures;
-}
-
 Json estimate_json(const Estimate& e) {
     return {{"estimate", number(e.value)}, {"standard_error", number(e.standard_error)}, {"ci95", interval(e)}};
 }
@@ -200,7 +187,30 @@ Catchment catchment_of(NamedRaster& dem, MeasureOptions& measure, const GrowthFi
     return {.raster = dem.raster, .outlet = *measure.catchment_outlet};
 }
 
+/// A trunk that sees hardly anything of a winding basin leaves growth no room.
+void check_grown(const DialsFit& fit) {
+    const auto links = std::ranges::find(fit.check, "links", &MeasureCheck::name);
+    if (links == fit.check.end() || links->grown_mean >= 0.1 * links->measured) return;
+    throw Error(fmt::format(
+        "networks grow in this basin from a straight trunk to {:.0f} links only, where {:.0f} were measured: "
+        "its outlet sees too little of it; choose a basin farther up with --outlet",
+        links->grown_mean, links->measured));
+}
+
 }  // namespace
+
+channel::GrowthMeasures growth_measures(const Raster& raster, const RasterMeasurement& m) {
+    const channel::StreamNetwork& network = m.statistics.network;
+    const double reach_m = m.statistics.network_laws.junction_reach_m;
+    channel::GrowthMeasures measures = channel::growth_measures(
+        {.network = network,
+         .offset_m = m.terrain.offset_m,
+         .reach_m = reach_m,
+         .beyond_source_m = channel::beyond_sources(raster.grid, m.terrain.graph, network, reach_m),
+         .valley_sides = channel::valley_sides(raster.grid, m.terrain.graph, m.terrain.elevation_m, network)});
+    measures.channel_maintenance_m = scaled(measures.channel_maintenance_m, d8_length_factor);
+    return measures;
+}
 
 GrowthFit fit_growth(const Catchment& catchment, const MeasureOptions& options, std::uint64_t seed) {
     MeasureOptions measuring = options;
@@ -209,7 +219,7 @@ GrowthFit fit_growth(const Catchment& catchment, const MeasureOptions& options, 
     const RasterMeasurement m = measure_raster(catchment.raster, measuring);
     GrowthFit fit{.site = growth_site(catchment),
                   .channel_area_m2 = m.statistics.channels.threshold_area_m2,
-                  .measures = measures_of(catchment.raster, m),
+                  .measures = growth_measures(catchment.raster, m),
                   .dials = {},
                   .notes = {}};
     fit.notes = fit.site.warnings;
@@ -218,6 +228,7 @@ GrowthFit fit_growth(const Catchment& catchment, const MeasureOptions& options, 
         "is freed of D8's {:.1f} %",
         fit.channel_area_m2, 100 * (d8_length_factor - 1)));
     fit.dials = fit_dials(fit.site.basin, fit.measures, seed);
+    check_grown(fit.dials);
     return fit;
 }
 

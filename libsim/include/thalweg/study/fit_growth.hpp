@@ -24,6 +24,10 @@ struct GrowthFit {
     std::vector<std::string> notes;
 };
 
+/// What tells of growth on a raster that was measured, C freed of what D8 adds to the length of channels (5.5 % on
+/// straight ones).
+channel::GrowthMeasures growth_measures(const Raster&, const RasterMeasurement&);
+
 /// Measures a catchment and finds its dials. C is freed of what D8 adds to the length of channels (5.5 % on straight
 /// ones): a grown network's links are straight. Throws Error where no trunk lies inside the basin or `fit_dials`
 /// cannot.
@@ -36,10 +40,10 @@ struct GrowthFitOptions {
     std::uint64_t seed = 1;
 };
 
-/// The same for the largest complete catchment (or that above an outlet) of a DEM, of an analyze folder (its filled.tif, with its channel area)
-/// or of a simulate folder (its elevation.tif), written into an existing folder: fit.json, fit.csv (what was measured
-/// beside what grown networks measure), growth.toml and basin.gpkg (the outline and trunk that it names), from which
-/// `thalweg grow` grows the like. Returns the text of fit.json.
+/// The same for the largest complete catchment (or that above an outlet) of a DEM, of an analyze folder (its
+/// filled.tif, with its channel area) or of a simulate folder (its elevation.tif), written into an existing folder:
+/// fit.json, fit.csv (what was measured beside what grown networks measure), growth.toml and basin.gpkg (the outline
+/// and trunk that it names), from which `thalweg grow` grows the like. Returns the text of fit.json.
 std::string fit_growth(const std::filesystem::path& target, const GrowthFitOptions&,
                        const std::filesystem::path& folder, const Messages&);
 
