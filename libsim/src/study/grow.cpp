@@ -187,11 +187,13 @@ std::string write_all(Experiment e, const GrownTerrain& t, const std::filesystem
     e.basin.base_level_m = t.site.basin.base_level_m;
     write_text(folder / "experiment.toml", to_toml(e));
     const double output_seconds = writing.seconds();
-    summary["seconds"] = {{"grow", t.seconds.grow},
-                          {"gradients", t.seconds.gradients},
-                          {"evaluate", t.seconds.evaluate},
-                          {"output", output_seconds},
-                          {"total", t.seconds.grow + t.seconds.gradients + t.seconds.evaluate + output_seconds}};
+    summary["seconds"] = {
+        {"grow", t.seconds.grow},
+        {"triangulate", t.seconds.triangulate},
+        {"gradients", t.seconds.gradients},
+        {"evaluate", t.seconds.evaluate},
+        {"output", output_seconds},
+        {"total", t.seconds.grow + t.seconds.triangulate + t.seconds.gradients + t.seconds.evaluate + output_seconds}};
     std::string text = text_of(summary);
     write_text(folder / "summary.json", text);
     return text;

@@ -67,10 +67,9 @@ Index limit_gradients(const grow::Network& network, GrownSurface& s) {
     return limited;
 }
 
-GrownSurface surface_over(const Experiment& e, const grow::Dials& dials, const grow::Network& network,
-                          double base_level_m) {
+GrownSurface surface_over(const Experiment& e, const grow::Network& network, grow::SurfaceMesh mesh) {
     GrownSurface s;
-    s.mesh = grow::surface_mesh(network, dials.flint, base_level_m, surface_spacing_m(dials));
+    s.mesh = std::move(mesh);
     for (const std::uint8_t channel : s.mesh.on_channel) {
         s.tension.push_back(channel ? e.growth.tension_channel : e.growth.tension_ridge);
     }
@@ -182,8 +181,12 @@ GrownTerrain grown_terrain(const Experiment& e, GrowthSite site, const Messages&
     t.tree = grow::stream_network(network, grow::elevations(network, t.dials.flint, t.site.basin.base_level_m));
     t.seconds.grow = growing.seconds();
     messages.progress(fmt::format("drawing the surface over {} links", network.size()));
+    const Stopwatch triangulating;
+    grow::SurfaceMesh mesh =
+        grow::surface_mesh(network, t.dials.flint, t.site.basin.base_level_m, surface_spacing_m(t.dials));
+    t.seconds.triangulate = triangulating.seconds();
     const Stopwatch solving;
-    t.surface = surface_over(e, t.dials, network, t.site.basin.base_level_m);
+    t.surface = surface_over(e, network, std::move(mesh));
     t.seconds.gradients = solving.seconds();
     const Stopwatch evaluating;
     t.elevation = evaluated(e, t.surface, t.dials);

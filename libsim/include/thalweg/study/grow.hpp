@@ -41,7 +41,7 @@ struct GrownTerrain {
     GrownSurface surface;
     Raster elevation;  ///< on the map; NaN outside the basin
     struct {
-        double grow, gradients, evaluate;
+        double grow, triangulate, gradients, evaluate;
     } seconds;
 };
 
