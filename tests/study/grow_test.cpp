@@ -13,6 +13,7 @@
 #include "thalweg/io/raster_file.hpp"
 #include "thalweg/io/vector_file.hpp"
 #include "thalweg/study/output_folder.hpp"
+#include "thalweg/study/simulate.hpp"
 #include "thalweg/study/tree_statistics.hpp"
 
 using namespace thalweg;
@@ -162,6 +163,39 @@ TEST_CASE("Roughness leaves channels alone, extra tension and width change what 
     tight.growth.extra_tension_divide = 0;
     tight.growth.extra_tension_channel = 50;
     CHECK(quantile(changed(tight), 1) > 1e-3);
+}
+
+TEST_CASE("A grown terrain is the start of a simulation on the same outline") {
+    const TempFolder folder;
+    std::filesystem::create_directory(folder / "growth");
+    const Json growth = Json::parse(study::grow(small_growth(), folder / "growth", Messages{}));
+    Experiment e;
+    e.domain.outline = folder.text("outline.geojson",
+                                   R"({"type": "Polygon", "coordinates":
+            [[[0, 0], [8000, 500], [12000, 6000], [7000, 11000], [1000, 9000], [-2000, 4000], [0, 0]]]})");
+    e.domain.nodes = 5000;
+    e.initial.elevation = folder / "growth" / "elevation.tif";
+    const Domain start = make_domain(e, Messages{});
+    const Raster grown = io::read_raster(folder / "growth" / "elevation.tif").raster;
+    std::size_t far = 0;
+    for (std::size_t i = 0; i < start.positions_m.size(); ++i) {
+        REQUIRE(std::isfinite(start.start.elevation_m[i]));
+        const Index cell = cell_at(grown, start.positions_m[i]);
+        if (cell == none || std::isnan(grown.values[cell])) continue;
+        far += std::abs(grown.values[cell] - start.start.elevation_m[i]) > 25;  // half a cell of a valley side
+    }
+    CHECK(far < start.positions_m.size() / 50);
+    e.uplift.rate_m_per_yr = 0;
+    e.river.k = 2e-6;
+    e.river.m = 0.5;
+    e.hillslope.diffusivity_m2_per_yr = 0.005;
+    e.time.step_yr = 10000;
+    e.time.max_steps = 5;
+    e.time.convergence = 0;
+    std::filesystem::create_directory(folder / "simulation");
+    const Json worn = Json::parse(study::simulate(e, folder / "simulation", Messages{}));
+    CHECK(worn["mass_balance"]["eroded_m3"].get<double>() > 0);
+    CHECK(worn["elevation_mean_m"].get<double>() < growth["terrain"]["input"]["elevation_mean_m"].get<double>());
 }
 
 TEST_CASE("What cannot be grown is refused before anything is written") {

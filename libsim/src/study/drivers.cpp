@@ -142,6 +142,25 @@ void multiply(std::vector<double>& values, const std::vector<double>& by) {
     for (std::size_t i = 0; i < values.size(); ++i) values[i] *= by[i];
 }
 
+/// Value of the cell with data nearest to a place, if its centre lies within two cells; NaN else. Cells are data where
+/// their centres lie in an outline, so along the outline itself many cells are not.
+double nearest_value(const io::Image& image, const Point& place) {
+    constexpr int reach = 2;
+    double value = std::numeric_limits<double>::quiet_NaN();
+    double least = reach;
+    const double col = std::floor(place.x), row = std::floor(place.y);
+    for (double r = std::max(0.0, row - reach); r <= std::min(image.rows - 1.0, row + reach); ++r) {
+        for (double c = std::max(0.0, col - reach); c <= std::min(image.cols - 1.0, col + reach); ++c) {
+            const double z = image.values[static_cast<std::size_t>(r) * image.cols + static_cast<std::size_t>(c)];
+            const double distance = std::hypot(c + 0.5 - place.x, r + 0.5 - place.y);
+            if (std::isnan(z) || !(distance <= least)) continue;
+            least = distance;
+            value = z;
+        }
+    }
+    return value;
+}
+
 }  // namespace
 
 std::vector<double> image_at(const std::string& key, const std::filesystem::path& path, const Nodes& nodes,
@@ -149,7 +168,10 @@ std::vector<double> image_at(const std::string& key, const std::filesystem::path
     const io::Image image = io::read_image(path);
     const std::string what = fmt::format("{}: {}", key, path.string());
     std::vector<double> values;
-    for (const Point& p : places_in(image, what, nodes, warnings)) values.push_back(io::bilinear(image, p.x, p.y));
+    for (const Point& p : places_in(image, what, nodes, warnings)) {
+        const double value = io::bilinear(image, p.x, p.y);
+        values.push_back(std::isnan(value) ? nearest_value(image, p) : value);
+    }
     check_covered(values, what, nodes);
     return values;
 }
