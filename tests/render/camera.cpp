@@ -107,6 +107,8 @@ TEST_CASE("Views that cannot be are refused") {
     CHECK_THROWS_AS(fitting_camera({.width = 0}, s), Error);
     CHECK_THROWS_AS(fitting_camera({.field_of_view = 0}, s), Error);
     CHECK_THROWS_AS(fitting_camera({.field_of_view = 3.1}, s), Error);
+    CHECK_THROWS_AS(fitting_camera({.field_of_view = 1e-300}, s), Error);
+    CHECK_THROWS_AS(fitting_camera({.azimuth = std::nan("")}, s), Error);
     CHECK_THROWS_AS(fitting_camera({.elevation = 1.7}, s), Error);
     CHECK_THROWS_AS(fitting_camera({.elevation = -0.1}, s), Error);
     CHECK_THROWS_AS(fitting_camera({}, TriangleSurface{}), Error);

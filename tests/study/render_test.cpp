@@ -155,6 +155,11 @@ TEST_CASE("Pictures that cannot be drawn are refused with a sentence") {
     };
     refused([](RenderOptions&) {}, "view.jpg");
     refused([](RenderOptions& o) { o.vertical_exaggeration = 0; });
+    refused([](RenderOptions& o) { o.vertical_exaggeration = 1e300; });
+    refused([](RenderOptions& o) { o.sun_azimuth = std::nan(""); });
+    refused([](RenderOptions& o) { o.sun_elevation = std::numeric_limits<double>::infinity(); });
+    refused([](RenderOptions& o) { o.view.azimuth = std::nan(""); });
+    refused([](RenderOptions& o) { o.view.field_of_view = 1e-300; });
     refused([](RenderOptions& o) { o.samples = 0; });
     refused([](RenderOptions& o) { o.lines = 1; });
     refused([](RenderOptions& o) { o.view.width = 0; });

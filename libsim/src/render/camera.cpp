@@ -19,9 +19,13 @@ void check(const View& view) {
         throw Error(
             fmt::format("a picture of {} x {} pixels cannot be drawn: 1 to 32768 each way", view.width, view.height));
     }
-    if (!(view.field_of_view > 0 && view.field_of_view <= 170 * degree)) {
-        throw Error(fmt::format("a field of view must be above 0 and at most 170 degrees, not {}",
-                                view.field_of_view / degree));
+    if (!std::isfinite(view.azimuth)) {
+        throw Error(
+            fmt::format("the bearing to the viewer must be a finite number of degrees, not {}", view.azimuth / degree));
+    }
+    if (!(view.field_of_view >= 0.0999 * degree && view.field_of_view <= 170 * degree)) {
+        throw Error(
+            fmt::format("a field of view must be from 0.1 to 170 degrees, not {}", view.field_of_view / degree));
     }
     if (!(view.elevation >= 0 && view.elevation <= 90.000001 * degree)) {
         throw Error(fmt::format("the viewer's elevation must be from 0 (level) to 90 degrees (straight down), not {}",

@@ -37,8 +37,11 @@ FileKind kind_of(const std::filesystem::path& out, const RenderOptions& options)
 }
 
 void check(const RenderOptions& o) {
-    if (!(o.vertical_exaggeration > 0) || !std::isfinite(o.vertical_exaggeration)) {
-        throw Error(fmt::format("the vertical exaggeration must be above 0, not {}", o.vertical_exaggeration));
+    if (!(o.vertical_exaggeration >= 1e-6 && o.vertical_exaggeration <= 1e6)) {
+        throw Error(fmt::format("the vertical exaggeration must be from 1e-6 to 1e6, not {}", o.vertical_exaggeration));
+    }
+    if (!std::isfinite(o.sun_azimuth) || !std::isfinite(o.sun_elevation)) {
+        throw Error("the sun's bearing and height must be finite numbers of degrees");
     }
     if (o.samples == 0 || o.samples > 4096) throw Error(fmt::format("{} samples per pixel: 1 to 4096", o.samples));
     if (o.lines < 2 || o.lines > 2000) throw Error(fmt::format("{} lines: from 2 to 2000 make a grid", o.lines));
