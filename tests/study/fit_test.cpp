@@ -17,6 +17,8 @@
 
 using namespace thalweg;
 using namespace thalweg::study;
+using test::error_of;
+using test::is_sentence;
 using test::TempFolder;
 using Json = nlohmann::json;
 
@@ -137,6 +139,16 @@ TEST_CASE("A written table of nodes is fitted as it stands, without those flagge
     CHECK(f["k"].get<double>() == Approx(1e-4).epsilon(1e-3));
     CHECK(f["steady_check"]["converged"] == true);
     CHECK(f["steady_check"]["mean_rate_m_per_yr"] == 1e-9);
+    temp.text("s/summary.json", "[]");
+    CHECK(is_sentence(error_of([&] { fitted(temp / "s", temp / "g", options); })));
+}
+
+TEST_CASE("A simulation whose nodes are missing is not taken for a DEM that was analyzed") {
+    const TempFolder temp;
+    std::filesystem::create_directory(temp / "s");
+    temp.text("s/slope_area.csv", "area_m2,slope,slope_se,count\n1e4,0.1,0.01,9\n1e5,0.05,0.01,9\n1e6,0.02,0.01,9\n");
+    temp.text("s/summary.json", R"({"mass_balance": {}})");
+    CHECK(error_of([&] { fitted(temp / "s", temp / "f", {}); }).find("slope_area_nodes.csv") != std::string::npos);
 }
 
 TEST_CASE("The fit of a study is that of its basin with the study's exponent, uplift and range of areas") {

@@ -227,12 +227,13 @@ Json terrain_json(const TerrainInput& input, const Statistics& s, const Position
     summary["chi"] = chi_json(s.chi, notes);
     summary["basins"] = basins_json(s, position);
     if (!s.basins.empty()) {
-        explain_null("basins", summary["basins"],
-                     "a basin without relief has no hypsometry; a length, a perimeter and what is made of them need a "
-                     "basin of more than one cell (on a mesh the raster drawn of it), the asymmetry a trunk with "
-                     "inflows; theta and ks need three bins of drainage area, their errors four, ksn a river that falls "
-                     "by a segment's drop",
-                     notes);
+        explain_null(
+            "basins", summary["basins"],
+            "a basin without relief has no hypsometry; a length, a perimeter and what is made of them need a "
+            "basin of more than one cell (on a mesh the raster drawn of it), the asymmetry a trunk with "
+            "inflows; theta and ks need three bins of drainage area, their errors four, ksn a river that falls "
+            "by a segment's drop",
+            notes);
     }
     return summary;
 }
@@ -247,11 +248,16 @@ void explain_null(const char* key, const Json& json, const char* reason, std::ve
 std::string text_of(const Json& json) { return json.dump(2) + "\n"; }
 
 Json read_json(const std::filesystem::path& path) {
+    Json json;
     try {
-        return Json::parse(read_text(path));
+        json = Json::parse(read_text(path));
     } catch (const Json::parse_error&) {
         throw Error(fmt::format("'{}' is not JSON; was it written by thalweg?", path.string()));
     }
+    if (!json.is_object()) {
+        throw Error(fmt::format("'{}' holds no JSON object; was it written by thalweg?", path.string()));
+    }
+    return json;
 }
 
 }  // namespace thalweg::study

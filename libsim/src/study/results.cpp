@@ -11,8 +11,13 @@ namespace thalweg::study {
 ResultKind kind_of(const std::filesystem::path& path) {
     if (!std::filesystem::is_directory(path)) return ResultKind::file;
     if (std::filesystem::is_regular_file(path / "slope_area_nodes.csv")) return ResultKind::simulated;
+    const bool summarized = std::filesystem::is_regular_file(path / "summary.json");
+    if (summarized && read_json(path / "summary.json").contains("mass_balance")) {
+        throw Error(fmt::format("'{}' is the folder of a simulation without its slope_area_nodes.csv: simulate anew",
+                                path.string()));
+    }
     if (std::filesystem::is_regular_file(path / "elevation.tif")) return ResultKind::grown;
-    if (std::filesystem::is_regular_file(path / "summary.json")) return ResultKind::analyzed;
+    if (summarized) return ResultKind::analyzed;
     throw Error(fmt::format("'{}' is neither a DEM nor the folder of an analyze, simulate or grow run", path.string()));
 }
 
