@@ -147,6 +147,8 @@ TEST_CASE("An unknown key is refused with the nearest one that exists") {
     CHECK(refusal("[river]\nerodability = 1\n").find("river.") != std::string::npos);
     CHECK(refusal("[river]\nkk = 1\n").find("'river.k'") != std::string::npos);
     CHECK(refusal("[tme]\nstep_yr = 1\n").find("unknown key 'tme'") != std::string::npos);
+    CHECK(refusal("[domian]\nnodes = 50\n").find("did you mean 'domain'?") != std::string::npos);
+    CHECK(refusal("domain = 5\n").find("write [domain]") != std::string::npos);
     CHECK(refusal("sed = 1\n").find("'seed'") != std::string::npos);
     CHECK(refusal("", {"river.erodability=1e-5"}).find("unknown key 'river.erodability'") != std::string::npos);
 }

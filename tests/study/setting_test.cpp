@@ -129,6 +129,15 @@ TEST_CASE("Outlines that are no single polygon are refused with what to do") {
                "holds 2 polygons"));
     CHECK(says(refused(geojson("LineString", "[[0,0],[9000,0],[0,9000]]")), "holds 0 polygons"));
     CHECK(says(refused(geojson("Polygon", "[[[0,0],[9000,9000],[9000,0],[0,9000],[0,0]]]")), "outline"));
+    for (const MeshKind mesh : meshes) {
+        e.domain.mesh = mesh;
+        const auto with_hole = [&](const std::string& hole) {
+            return refused(geojson("Polygon", "[[[0,0],[9000,0],[9000,9000],[0,9000],[0,0]]," + hole + "]"));
+        };
+        CHECK(says(with_hole("[[-1000,3000],[2000,3000],[2000,5000],[-1000,3000]]"), "touch or cross"));
+        CHECK(says(with_hole("[[0,3000],[2000,3000],[2000,5000],[0,3000]]"), "touch or cross"));
+        CHECK(says(with_hole("[[11000,3000],[12000,3000],[12000,5000],[11000,3000]]"), "lies outside the outline"));
+    }
     CHECK(says(refused("{}"), "o.geojson"));
     e.domain.outline = temp / "missing.gpkg";
     CHECK(says(refusal(e), "missing.gpkg"));
@@ -144,9 +153,23 @@ TEST_CASE("A raster's number of cells is met within 2 % by whole rows and column
             const Grid grid = std::get<Grid>(make_domain(e, Messages{}).topology);
             INFO(width << " x " << height << ": " << nodes);
             CHECK(std::abs(grid.size() - static_cast<double>(nodes)) <= 0.02 * nodes);
-            CHECK(std::abs(std::log(grid.east_west[0] / grid.north_south[0])) < 0.45);  // 129 cells are 6 rows of 21, not 7 of 19
+            CHECK(std::abs(std::log(grid.east_west[0] / grid.north_south[0])) <
+                  0.45);  // 129 cells are 6 rows of 21, not 7 of 19
         }
     }
+}
+
+TEST_CASE("Rectangles too small, too large or too narrow for numbers are refused") {
+    for (const MeshKind mesh : meshes) {
+        Experiment e = on_square(mesh, 400);
+        e.domain.size_m = {1e-300, 1e-300};
+        CHECK(says(refusal(e), "domain.size_m"));
+        e.domain.size_m = {1e300, 1e300};
+        CHECK(says(refusal(e), "domain.size_m"));
+    }
+    Experiment e = on_square(MeshKind::raster, 400);
+    e.domain.size_m = {1, 1e40};
+    CHECK(says(refusal(e), "too narrow"));
 }
 
 TEST_CASE("Named sides of a rectangle are its four, corners belonging to two") {

@@ -264,3 +264,25 @@ TEST_CASE("Keys that contradict each other are refused before the simulation beg
         output.base_depth_m = 10;
     });
 }
+
+TEST_CASE("A heightfield that cannot be is refused before the first step") {
+    const test::TempFolder temp;
+    const auto refused_before_stepping = [&](const Experiment& e) {
+        bool stepped = false;
+        Messages messages;
+        messages.progress = [&](const std::string& text) { stepped = stepped || text != "making the mesh"; };
+        const std::string refusal = test::error_of([&] { simulate(e, temp / "out", messages); });
+        CHECK(test::is_sentence(refusal));
+        CHECK(!stepped);
+        return refusal;
+    };
+    Experiment e = island(MeshKind::raster, 400);
+    e.output.resolution = 100000;
+    CHECK(refused_before_stepping(e).find("80000 x 100000") != std::string::npos);
+    e.output.resolution.reset();
+    e.output.interpolation = Interpolation::natural;
+    CHECK(refused_before_stepping(e).find("output.interpolation") != std::string::npos);
+    e = island(MeshKind::tin, 400);
+    e.output.resolution = 100000;
+    CHECK(refused_before_stepping(e).find("80000 x 100000") != std::string::npos);
+}

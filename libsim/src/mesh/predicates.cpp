@@ -33,4 +33,6 @@ bool is_simple(const Polygon& polygon) {
 
 Polygon simple_polygon(const Polygon& polygon) { return checked_outline(polygon); }
 
+std::vector<Polygon> simple_rings(const PolygonPart& part) { return checked_rings(part); }
+
 }  // namespace thalweg::mesh

@@ -55,6 +55,9 @@ Domain driven(const Experiment& e, Site site) {
 
 Domain rectangle_domain(const Experiment& e) {
     const double width = e.domain.size_m[0], height = e.domain.size_m[1];
+    if (!std::isnormal(width * height)) {
+        throw Error(fmt::format("domain.size_m: {} x {} m is an area that numbers cannot hold", width, height));
+    }
     const PolygonPart outline{{{0, 0}, {width, 0}, {width, height}, {0, height}}, {}};
     Site site = e.domain.mesh == MeshKind::raster ? rectangle_raster_site(e) : tin_site(e, outline, "", 1);
     site.domain.extent_m = std::max(width, height);

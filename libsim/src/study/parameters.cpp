@@ -91,12 +91,32 @@ class Reader {
             if (const toml::table* inner = node.as_table(); inner != nullptr && is_section(name)) {
                 refuse_unknown(*inner, name + ".");
             } else if (!known_.contains(name) || key.str().find('.') != std::string_view::npos) {
-                throw Error(fmt::format("unknown key '{}'; did you mean '{}'?", name, nearest(name)));
+                refuse(name, node);
             }
         }
     }
 
   private:
+    [[noreturn]] void refuse(const std::string& name, const toml::node& node) const {
+        if (is_section(name)) {
+            throw Error(
+                fmt::format("unknown key '{}': that is a section; write [{}] and its keys below it", name, name));
+        }
+        const bool section = node.is_table() && name.find('.') == std::string::npos;
+        throw Error(
+            fmt::format("unknown key '{}'; did you mean '{}'?", name, section ? nearest_section(name) : nearest(name)));
+    }
+
+    std::string nearest_section(const std::string& name) const {
+        std::set<std::string> sections;
+        for (const std::string& key : known_) {
+            if (const std::size_t dot = key.find('.'); dot != std::string::npos) sections.insert(key.substr(0, dot));
+        }
+        return *std::min_element(sections.begin(), sections.end(), [&](const auto& a, const auto& b) {
+            return edit_distance(name, a) < edit_distance(name, b);
+        });
+    }
+
     bool is_section(const std::string& name) const {
         return std::any_of(known_.begin(), known_.end(), [&](const auto& key) { return key.starts_with(name + "."); });
     }

@@ -320,7 +320,12 @@ std::string simulate_on(const Experiment& e, const Places& places, const Message
     const auto topology = std::move(domain.topology);
     domain.topology = std::holds_alternative<Grid>(topology) ? std::variant<Grid, Mesh>(std::get<Grid>(topology))
                                                              : std::variant<Grid, Mesh>(Mesh{});
-    return std::visit([&](const auto& t) { return run(t, e, domain, mesh_seconds, places, messages); }, topology);
+    return std::visit(
+        [&](const auto& t) {
+            check_heightfield(t, domain, e);
+            return run(t, e, domain, mesh_seconds, places, messages);
+        },
+        topology);
 }
 
 }  // namespace

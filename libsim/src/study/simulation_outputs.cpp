@@ -94,9 +94,13 @@ io::Layer layer(const Experiment& e, std::string description) {
 }
 
 /// On the mesh's own plane, in metres.
-Raster interpolated(const Mesh& mesh, const std::vector<double>& elevation_m, const Experiment& e) {
+Index resolution_of(const Experiment& e) {
     constexpr Index usual_resolution = 512;
-    Raster raster = surface::covering_raster(mesh, e.output.resolution.value_or(usual_resolution));
+    return e.output.resolution.value_or(usual_resolution);
+}
+
+Raster interpolated(const Mesh& mesh, const std::vector<double>& elevation_m, const Experiment& e) {
+    Raster raster = surface::covering_raster(mesh, resolution_of(e));
     interpolate(mesh, elevation_m, e, raster);
     return raster;
 }
@@ -150,6 +154,18 @@ void put_on_map(const Domain& domain, Placement& place) {
 }
 
 }  // namespace
+
+void check_heightfield(const Grid& grid, const Domain& domain, const Experiment& e) {
+    if (e.output.interpolation != Interpolation::linear) {
+        throw Error(
+            "output.interpolation does not apply to a raster mesh, which has a height in every cell: leave it out");
+    }
+    if (e.output.resolution) covering_cells({grid, domain.placement, {}}, *e.output.resolution);
+}
+
+void check_heightfield(const Mesh& mesh, const Domain&, const Experiment& e) {
+    surface::covering_grid(mesh, resolution_of(e));
+}
 
 Raster elevation_raster(const Grid& grid, const Domain& domain, const std::vector<double>& elevation_m,
                         const Experiment& e) {

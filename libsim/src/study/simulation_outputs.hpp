@@ -53,6 +53,10 @@ struct Heightfield {
 Heightfield heightfield(const Grid&, const Domain&, const Finished&, const Experiment&);
 Heightfield heightfield(const Mesh&, const Domain&, const Finished&, const Experiment&);
 
+/// Throws Error where the heightfield that the experiment asks for cannot be: before the simulation, not after it.
+void check_heightfield(const Grid&, const Domain&, const Experiment&);
+void check_heightfield(const Mesh&, const Domain&, const Experiment&);
+
 /// The elevations alone, interpolated as the experiment asks.
 Raster elevation_raster(const Grid&, const Domain&, const std::vector<double>& elevation_m, const Experiment&);
 Raster elevation_raster(const Mesh&, const Domain&, const std::vector<double>& elevation_m, const Experiment&);

@@ -24,16 +24,6 @@ double area_of(const PolygonPart& part) {
     return area;
 }
 
-/// Outer ring counter-clockwise, holes clockwise.
-std::vector<Polygon> rings_of(const PolygonPart& part) {
-    std::vector<Polygon> rings{mesh::simple_polygon(part.outer)};
-    for (const Polygon& hole : part.holes) {
-        rings.push_back(mesh::simple_polygon(hole));
-        std::reverse(rings.back().begin(), rings.back().end());
-    }
-    return rings;
-}
-
 /// Distance of nodes, from itself or from their number.
 double spacing_in(const Experiment& e, double area_m2) {
     if (e.domain.nodes && e.domain.spacing_m) {
@@ -117,6 +107,10 @@ std::pair<double, double> columns_and_rows(const Experiment& e) {
     const double spacing = spacing_in(e, width * height);
     const std::pair<double, double> plain{std::round(width / spacing), std::round(height / spacing)};
     if (!e.domain.nodes) return plain;
+    if (!(std::max(plain.first, plain.second) < none)) {
+        throw Error(fmt::format("a domain of {} x {} m is too narrow for {} cells: they would make one line", width,
+                                height, *e.domain.nodes));
+    }
     const double wanted = *e.domain.nodes;
     const auto missed = [&](double cols, double rows) { return std::abs(cols * rows - wanted) > 0.02 * wanted; };
     if (!missed(plain.first, plain.second)) return plain;
@@ -179,7 +173,7 @@ Site tin_site(const Experiment& e, const PolygonPart& outline_m, const std::stri
     site.domain.unit_m = unit_m;
     site.domain.placement.crs_wkt = crs_wkt;
     site.domain.area_m2 = area_of(outline_m);
-    site.rim.rings = rings_of(outline_m);
+    site.rim.rings = mesh::simple_rings(outline_m);
     for (Index node = 0; node < mesh.size(); ++node) {
         site.nodes.plane_m.push_back({mesh.x[node], mesh.y[node]});
         site.nodes.map.push_back({mesh.x[node] / unit_m, mesh.y[node] / unit_m});
@@ -197,7 +191,7 @@ Site tin_site(const Experiment& e, const PolygonPart& outline_m, const std::stri
 Site raster_site(const Experiment& e, const PolygonPart& outline_m, const std::string& crs_wkt, double unit_m) {
     refuse_points(e);
     Site site;
-    site.rim.rings = rings_of(outline_m);
+    site.rim.rings = mesh::simple_rings(outline_m);
     const double spacing = spacing_in(e, area_of(outline_m));
     const Cells cells = e.domain.nodes ? cells_by_count(site.rim.rings, spacing, *e.domain.nodes, e.seed)
                                        : cells_in(site.rim.rings, spacing);

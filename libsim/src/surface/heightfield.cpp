@@ -22,7 +22,7 @@ double interpolate(const std::array<double, 3>& v, const std::array<double, 3>& 
 
 }  // namespace
 
-Raster covering_raster(const Mesh& mesh, Index resolution) {
+Grid covering_grid(const Mesh& mesh, Index resolution) {
     if (resolution == 0) throw Error("a raster needs a resolution of at least one cell along its longer side");
     if (mesh.size() == 0) throw Error("a raster cannot cover a mesh without nodes");
     const auto [west, east] = std::minmax_element(mesh.x.begin(), mesh.x.end());
@@ -33,12 +33,16 @@ Raster covering_raster(const Mesh& mesh, Index resolution) {
     const auto cells_across = [&](double length) {
         return static_cast<Index>(std::max(1.0, std::ceil(length / cell - 1e-9)));  // whole numbers stay themselves
     };
+    return plane_grid(cells_across(height), cells_across(width), cell, cell);
+}
+
+Raster covering_raster(const Mesh& mesh, Index resolution) {
     Raster raster;
-    raster.grid = plane_grid(cells_across(height), cells_across(width), cell, cell);
-    raster.placement.west = *west;
-    raster.placement.north = *north;
-    raster.placement.cell_width = cell;
-    raster.placement.cell_height = cell;
+    raster.grid = covering_grid(mesh, resolution);
+    raster.placement.west = *std::min_element(mesh.x.begin(), mesh.x.end());
+    raster.placement.north = *std::max_element(mesh.y.begin(), mesh.y.end());
+    raster.placement.cell_width = raster.grid.east_west[0];
+    raster.placement.cell_height = raster.grid.east_west[0];  // square cells; one row has no north-south lengths
     raster.values.assign(raster.grid.size(), std::numeric_limits<double>::quiet_NaN());
     return raster;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <vector>
+
 #include "thalweg/core/point.hpp"
 
 namespace thalweg::mesh {
@@ -17,5 +19,9 @@ bool is_simple(const Polygon&);
 /// The polygon, counter-clockwise.
 /// Throws Error if it is not a simple polygon of positive area with finite corners.
 Polygon simple_polygon(const Polygon&);
+
+/// The rings of a part: the outer one counter-clockwise, then its holes clockwise.
+/// Throws Error as above for each of them, and if two rings touch, or a hole lies outside the outer ring or in another.
+std::vector<Polygon> simple_rings(const PolygonPart&);
 
 }  // namespace thalweg::mesh

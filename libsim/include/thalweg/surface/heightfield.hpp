@@ -8,8 +8,11 @@
 
 namespace thalweg::surface {
 
-/// Square cells over the bounding box of the mesh, from its north-west corner, `resolution` of them along its longer
-/// side; the plane in metres, values NaN. Throws Error for no cells or no nodes.
+/// Square cells over the bounding box of the mesh, `resolution` of them along its longer side.
+/// Throws Error for no cells, no nodes, or more cells than an `Index` can count.
+Grid covering_grid(const Mesh&, Index resolution);
+
+/// The raster of these cells, from the mesh's north-west corner; the plane in metres, values NaN. Throws as above.
 Raster covering_raster(const Mesh&, Index resolution);
 
 /// Node values on the centres of the raster's cells by linear (barycentric) interpolation in the triangles; NaN outside
