@@ -2,7 +2,6 @@
 #include "terrain/basin_graph.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 #include <numeric>
 #include <tuple>
@@ -49,7 +48,9 @@ Incidence passes_by_basin(const std::vector<Pass>& tree, std::size_t basins) {
 }
 
 /// The same pass seen from the other side.
-Pass reversed(const Pass& pass) { return {pass.height_m, pass.low_m, pass.other_basin, pass.other_node, pass.basin, pass.node}; }
+Pass reversed(const Pass& pass) {
+    return {pass.height_m, pass.low_m, pass.other_basin, pass.other_node, pass.basin, pass.node};
+}
 
 SpillTree walk_from_outside(const std::vector<Pass>& tree, std::size_t basins) {
     const Incidence at = passes_by_basin(tree, basins);
@@ -95,35 +96,6 @@ Index count_lakes(const std::vector<Pass>& tree, std::span<const Index> pit, std
 
 }  // namespace
 
-LowestPasses::LowestPasses(Index expected) : table_(std::bit_ceil(std::size_t{2} * expected + 16), none) {
-    passes_.reserve(expected);
-    pairs_.reserve(expected);
-}
-
-std::size_t LowestPasses::find_slot(std::uint64_t pair) const {
-    const std::size_t mask = table_.size() - 1;
-    // Fibonacci hashing, by bits that both numbers reach: lower ones would hang on the larger piece alone.
-    std::size_t slot = (pair * 0x9E3779B97F4A7C15u >> 32) & mask;
-    while (table_[slot] != none && pairs_[table_[slot]] != pair) slot = (slot + 1) & mask;
-    return slot;
-}
-
-void LowestPasses::look_up(std::uint64_t pair) {
-    const std::size_t slot = find_slot(pair);
-    last_pair_ = pair;
-    last_ = table_[slot];
-    if (last_ != none) return;
-    last_ = table_[slot] = static_cast<Index>(passes_.size());
-    passes_.push_back(no_pass);
-    pairs_.push_back(pair);
-    if (2 * passes_.size() > table_.size()) grow();
-}
-
-void LowestPasses::grow() {
-    table_.assign(2 * table_.size(), none);
-    for (Index i = 0; i < passes_.size(); ++i) table_[find_slot(pairs_[i])] = i;
-}
-
 Joined::Joined(Index basins) : parent_(basins), size_(basins, 1) { std::iota(parent_.begin(), parent_.end(), 0u); }
 
 Index Joined::find(Index basin) {
@@ -144,24 +116,37 @@ bool Joined::join(Index a, Index b) {
     return true;
 }
 
-Pieces number_pieces(Joined& joined, Index basins) {
-    Pieces pieces{std::vector<Index>(basins, none), 0};
-    std::vector<Index> number(basins, none);
-    for (Index basin = 0; basin < basins; ++basin) {
-        Index& of_root = number[joined.find(basin)];
-        if (of_root == none) of_root = pieces.count++;
-        pieces.of_basin[basin] = of_root;
+std::vector<Pass> spanning_passes(std::vector<Pass> passes, Joined& joined) {
+    std::vector<Pass> tree;
+    tree.reserve(joined.size());
+    std::vector<Index> lowest(joined.size(), none);  // per piece: place of its lowest pass
+    std::vector<Index> pieces;                       // that have one
+    while (!passes.empty()) {
+        std::size_t kept = 0;
+        const auto offer = [&](Index piece) {
+            Index& best = lowest[piece];
+            if (best == none) pieces.push_back(piece);
+            if (best == none || lower(passes[kept], passes[best])) best = static_cast<Index>(kept);
+        };
+        for (const Pass& pass : passes) {
+            const Index a = joined.find(pass.basin);
+            const Index b = joined.find(pass.other_basin);
+            if (a == b) continue;
+            passes[kept] = pass;
+            offer(a);
+            offer(b);
+            ++kept;
+        }
+        passes.resize(kept);
+        for (const Index piece : pieces) {
+            const Pass& pass = passes[lowest[piece]];
+            if (joined.join(pass.basin, pass.other_basin)) tree.push_back(pass);
+        }
+        for (const Index piece : pieces) lowest[piece] = none;
+        pieces.clear();
     }
-    return pieces;
+    return tree;
 }
-
-void join_over(std::span<const Pass> passes, Joined& joined, std::vector<Pass>& tree) {
-    for (const Pass& pass : passes) {
-        if (pass.basin != none && joined.join(pass.basin, pass.other_basin)) tree.push_back(pass);
-    }
-}
-
-void sort_lowest_first(std::vector<Pass>& passes) { std::sort(passes.begin(), passes.end(), lower); }
 
 SpillTree spill_tree(std::vector<Pass> tree, Joined& joined, std::span<const Index> pit,
                      std::span<const double> elevation_m) {

@@ -46,37 +46,8 @@ inline bool lower(const Pass& a, const Pass& b) {
 }
 
 /// A pass higher than all others.
-inline constexpr Pass no_pass{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), none, none,
-                              none, none};
-
-/// The lowest pass between each pair of pieces (of one or more basins), as they are offered: a hash table with open
-/// addressing.
-class LowestPasses {
-  public:
-    explicit LowestPasses(Index expected);
-    /// The lowest pass so far; good until the next call.
-    Pass& between(Index piece, Index other_piece) {
-        const std::uint64_t pair = std::uint64_t{std::min(piece, other_piece)} << 32 | std::max(piece, other_piece);
-        if (pair != last_pair_) look_up(pair);
-        return passes_[last_];
-    }
-    void offer(Index piece, Index other_piece, const Pass& pass) {
-        Pass& best = between(piece, other_piece);
-        if (pass.height_m <= best.height_m && lower(pass, best)) best = pass;
-    }
-    std::vector<Pass> take() { return std::move(passes_); }
-
-  private:
-    void look_up(std::uint64_t pair);
-    std::size_t find_slot(std::uint64_t pair) const;
-    void grow();
-
-    std::vector<Pass> passes_;
-    std::vector<std::uint64_t> pairs_;  // whose pass it is: the smaller piece and the larger
-    std::vector<Index> table_;          // positions in passes_, `none` where free; a power of two long
-    std::uint64_t last_pair_ = 0;       // along a border the same pair is offered again and again
-    Index last_ = 0;
-};
+inline constexpr Pass no_pass{
+    std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), none, none, none, none};
 
 /// Basins joined to larger and larger pieces, each named by the number that `find` gives (the outside's is not fixed).
 class Joined {
@@ -85,21 +56,16 @@ class Joined {
     Index find(Index basin);
     /// False if they were joined already.
     bool join(Index a, Index b);
+    Index size() const { return static_cast<Index>(parent_.size()); }
 
   private:
     std::vector<Index> parent_;
     std::vector<Index> size_;
 };
 
-/// Consecutive numbers of the pieces, per basin; the piece of the outside is 0.
-struct Pieces {
-    std::vector<Index> of_basin;
-    Index count;
-};
-Pieces number_pieces(Joined& joined, Index basins);
-
-/// Adds to `tree` the passes that join something, and joins it.
-void join_over(std::span<const Pass> passes, Joined& joined, std::vector<Pass>& tree);
+/// The passes of the minimum spanning forest, and `joined` over them. By Borůvka's rounds: every piece is joined over
+/// its lowest pass, which at least halves their number, and passes within a piece are forgotten.
+std::vector<Pass> spanning_passes(std::vector<Pass> passes, Joined& joined);
 
 /// How each basin drains: over `node` (its own) into `other_node` of `other_basin`, at `height_m`.
 struct SpillTree {
@@ -107,9 +73,6 @@ struct SpillTree {
     std::vector<Index> order;   ///< basins, each after the one it spills into; begins with the outside
     Index lakes;                ///< basins that hold water; a flat pit counts once, however many basins it makes
 };
-
-/// Passes sorted from the lowest, for Kruskal's algorithm.
-void sort_lowest_first(std::vector<Pass>& passes);
 
 /// Roots the tree at the outside. `pit` is the lowest node of each basin. Pieces that no pass joins to the outside
 /// drain at the lowest of their pits (ties: the lower node).

@@ -11,7 +11,9 @@ namespace thalweg::terrain {
 
 /// Memory that finding lakes needs; kept from step to step it is allocated once.
 struct LakeBuffers {
-    std::vector<Index> basin;  ///< per node
+    std::vector<Index> basin;               ///< per node
+    std::vector<std::vector<Index>> lists;  ///< nodes by basin, for some basins each
+    std::vector<Index> receiver;            ///< per node of a mesh
 };
 
 /// `drain_lakes` with memory that is already there.

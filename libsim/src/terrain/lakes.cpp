@@ -2,16 +2,13 @@
 #include "thalweg/terrain/lakes.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
 
 #include "terrain/basin_graph.hpp"
 #include "terrain/check_sizes.hpp"
-#include "terrain/downhill.hpp"
-#include "terrain/lake_buffers.hpp"
-#include "terrain/passes.hpp"
+#include "terrain/lake_basins.hpp"
 #include "terrain/terrain_view.hpp"
 #include "thalweg/core/parallel.hpp"
 
@@ -52,75 +49,26 @@ std::vector<Index> pits_after_joining_flats(const Terrain<T>& terrain, FlowDirec
     return pits;
 }
 
-constexpr Index unlabelled = none - 1;
-
-/// Basin of every node: `outside`, or the number of the pit its water reaches; `none` without data. Each chain is
-/// walked to the first node that is known, and once more to write the label. Several threads may walk the same chain:
-/// they write the same labels, so it does not matter who comes first.
-template <Topology T>
-void label_basins(const Terrain<T>& terrain, const FlowDirections& directions, const std::vector<Index>& pits,
-                  std::vector<Index>& basin) {
-    const Index nodes = terrain.topology.size();
-    basin.resize(nodes);
-    parallel_for(0, nodes,
-                 [&](Index first, Index last) { std::fill(basin.begin() + first, basin.begin() + last, unlabelled); });
-    for (Index number = 1; number < pits.size(); ++number) basin[pits[number]] = number;
-    const auto neighbor = downhill(terrain.topology);
-    const auto receiver = [&](Index node) { return neighbor(node, directions[node]); };
-    const auto read = [&](Index node) { return std::atomic_ref(basin[node]).load(std::memory_order_relaxed); };
-    const auto write = [&](Index node, Index label) {
-        std::atomic_ref(basin[node]).store(label, std::memory_order_relaxed);
-    };
-    parallel_for(0, nodes, [&](Index first, Index last) {
-        for (Index start = first; start < last; ++start) {
-            Index node = start;
-            Index label = read(node);
-            if (label != unlabelled) continue;
-            while (label == unlabelled && directions[node] != no_flow) {
-                node = receiver(node);
-                label = read(node);
-            }
-            if (label == unlabelled) {
-                label = terrain.has_data(node) ? outside : none;
-                write(node, label);
-            }
-            for (Index on_way = start; on_way != node; on_way = receiver(on_way)) write(on_way, label);
-        }
-    });
-}
-
 /// What is known once all water has a way out.
 struct Lakes {
-    std::vector<Index> pits;       ///< per basin; the outside has `none`
-    std::span<const Index> basin;  ///< per node; empty if there is no basin but the outside
+    LakeBasins basins;
     SpillTree spill;
 };
 
-/// The minimum spanning tree of the basins. One round of Borůvka's algorithm over the nodes joins every basin over its
-/// lowest pass, which leaves well under half as many pieces, and few passes between them for Kruskal's.
 template <Topology T>
-SpillTree join_basins(const Terrain<T>& terrain, const Lakes& lakes) {
-    const Index basins = static_cast<Index>(lakes.pits.size());
-    Joined joined(basins);
-    std::vector<Pass> tree;
-    tree.reserve(basins);
-    join_over(lowest_pass_of_each_basin(terrain, lakes.basin, lakes.pits), joined, tree);
-    const Pieces pieces = number_pieces(joined, basins);
-    std::vector<Pass> passes = passes_between_pieces(terrain, lakes.basin, pieces.of_basin, pieces.count);
-    sort_lowest_first(passes);
-    join_over(passes, joined, tree);
-    return spill_tree(std::move(tree), joined, lakes.pits, terrain.elevation_m);
+SpillTree join_basins(const Terrain<T>& terrain, const LakeBasins& basins) {
+    Joined joined(basins.count());
+    std::vector<Pass> tree = spanning_passes(passes_between(terrain, basins), joined);
+    return spill_tree(std::move(tree), joined, basins.pit, terrain.elevation_m);
 }
 
 template <Topology T>
 Lakes find_lakes(const Terrain<T>& terrain, FlowDirections& directions, LakeBuffers& buffers) {
-    Lakes lakes{.pits = pits_after_joining_flats(terrain, directions),
-                .basin = {},
-                .spill = {.way_out = {}, .order = {}, .lakes = 0}};
-    if (lakes.pits.size() == 1) return lakes;
-    label_basins(terrain, directions, lakes.pits, buffers.basin);
-    lakes.basin = buffers.basin;
-    lakes.spill = join_basins(terrain, lakes);
+    std::vector<Index> pits = pits_after_joining_flats(terrain, directions);
+    Lakes lakes{.basins = {}, .spill = {.way_out = {}, .order = {}, .lakes = 0}};
+    if (pits.size() == 1) return lakes;
+    lakes.basins = lake_basins(terrain.topology, directions, std::move(pits), buffers);
+    lakes.spill = join_basins(terrain, lakes.basins);
     return lakes;
 }
 
@@ -142,13 +90,13 @@ std::vector<double> filled(const Terrain<T>& terrain) {
     LakeBuffers buffers;
     const Lakes lakes = find_lakes(terrain, directions, buffers);
     std::vector<double> surface(terrain.elevation_m.begin(), terrain.elevation_m.end());
-    if (lakes.pits.size() == 1) return surface;
     const std::vector<double> level = water_levels(lakes.spill);
-    parallel_for(0, terrain.topology.size(), [&](Index first, Index last) {
-        for (Index node = first; node < last; ++node) {
-            if (lakes.basin[node] != none) surface[node] = std::max(surface[node], level[lakes.basin[node]]);
+    const auto some = [&](Index first, Index last) {
+        for (Index basin = first; basin < last; ++basin) {
+            for (const Index node : lakes.basins.nodes[basin]) surface[node] = std::max(surface[node], level[basin]);
         }
-    });
+    };
+    parallel_for(0, lakes.basins.count(), some, 128);
     return surface;
 }
 
@@ -178,7 +126,7 @@ Index drained(const Terrain<T>& terrain, FlowDirections& directions, LakeBuffers
     check_sizes(terrain.topology.size(), terrain.elevation_m.size(), terrain.boundary.size());
     check_sizes(terrain.topology.size(), directions.size(), directions.size());
     const Lakes lakes = find_lakes(terrain, directions, buffers);
-    for (Index basin = 1; basin < lakes.pits.size(); ++basin) {
+    for (Index basin = 1; basin < lakes.basins.count(); ++basin) {
         const Pass& out = lakes.spill.way_out[basin];
         reverse_path(terrain.topology, out.node, slot_towards(terrain.topology, out.node, out.other_node), directions);
     }

@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "terrain/lake_basins.hpp"
+
+#include <cmath>
+
+#include "terrain/blocks.hpp"
+
+namespace thalweg::terrain {
+namespace {
+
+/// Donors of a grid's cells, by the directions of the cells around.
+class GridDonors {
+  public:
+    GridDonors(const Grid& grid, const FlowDirections& directions)
+        : grid_(grid), directions_(directions.data()), cols_(grid.cols), last_inner_(grid.size() - grid.cols - 1) {}
+
+    static constexpr Index most(Index) { return 8; }
+    static void fetch(Index, Index) {}  // near in memory
+
+    /// Writes the donors of `node` from `to` on, where there is room for `most(node)`, and returns where they end.
+    /// Cells beyond the west and the east edge are the row before's last and the next row's first; no direction leads
+    /// over the edge, so they are never donors and need no test.
+    Index* write(Index node, Index* to) const {
+        if (node <= cols_ || node >= last_inner_) return write_at_edge(node, to);
+        const auto offer = [&](Index donor, Slot slot) {
+            *to = donor;
+            to += directions_[donor] == slot;
+        };
+        offer(node + 1, 4);
+        offer(node + cols_ + 1, 5);
+        offer(node + cols_, 6);
+        offer(node + cols_ - 1, 7);
+        offer(node - 1, 0);
+        offer(node - cols_ - 1, 1);
+        offer(node - cols_, 2);
+        offer(node - cols_ + 1, 3);
+        return to;
+    }
+
+  private:
+    Index* write_at_edge(Index node, Index* to) const {
+        grid_.neighbors(node, [&](Index neighbor, double, Slot slot) {
+            if (directions_[neighbor] == grid_.reverse(node, slot)) *to++ = neighbor;
+        });
+        return to;
+    }
+
+    const Grid& grid_;
+    const Slot* directions_;
+    Index cols_, last_inner_;
+};
+
+/// Asks for the neighbours of a node that comes soon, and for what says where those of a later one stand. Inlined by
+/// force: what does nothing but ask the compiler would drop.
+[[gnu::always_inline]] inline void fetch_neighbors(const Mesh& mesh, Index soon, Index later) {
+    __builtin_prefetch(&mesh.offset[later]);
+    __builtin_prefetch(mesh.neighbor_list.data() + mesh.offset[soon]);
+}
+
+class MeshDonors {
+  public:
+    MeshDonors(const Mesh& mesh, const std::vector<Index>& receiver) : mesh_(mesh), receiver_(receiver.data()) {}
+
+    Index most(Index node) const { return mesh_.offset[node + 1] - mesh_.offset[node]; }
+    [[gnu::always_inline]] void fetch(Index soon, Index later) const { fetch_neighbors(mesh_, soon, later); }
+
+    Index* write(Index node, Index* to) const {
+        mesh_.neighbors(node, [&](Index neighbor, double, Slot) {
+            *to = neighbor;
+            to += receiver_[neighbor] == node;
+        });
+        return to;
+    }
+
+  private:
+    const Mesh& mesh_;
+    const Index* receiver_;
+};
+
+/// Basins that one thread takes at a time.
+Blocks basin_blocks(Index basins) { return Blocks(basins, 128, 64); }
+
+/// Who goes through a list may read that far beyond it, to ask for what comes next.
+constexpr std::size_t read_beyond = 64;
+
+/// Appends the pit and all upstream of it, and labels them. Returns the new end of the list, which is longer.
+template <class Donors>
+std::size_t walk_up(const Donors& donors, Index pit, Index number, std::size_t end, std::vector<Index>& list,
+                    std::vector<Index>& basin) {
+    std::size_t next = end;
+    list.resize(std::max(list.size(), end + 1));
+    list[end++] = pit;
+    while (next < end) {
+        if (next + 16 < end) donors.fetch(list[next + 8], list[next + 16]);
+        const Index node = list[next++];
+        basin[node] = number;
+        const std::size_t room = end + donors.most(node);
+        if (room > list.size()) list.resize(2 * room);
+        end = static_cast<std::size_t>(donors.write(node, list.data() + end) - list.data());
+    }
+    return end;
+}
+
+template <class Donors>
+LakeBasins basins_of(const Donors& donors, Index nodes, std::vector<Index> pit, LakeBuffers& buffers) {
+    LakeBasins basins{std::move(pit), {}, {}};
+    basins.nodes.resize(basins.pit.size());
+    buffers.basin.resize(nodes);
+    parallel_for(0, nodes, [&](Index first, Index last) {
+        std::fill(buffers.basin.begin() + first, buffers.basin.begin() + last, outside);
+    });
+    const Blocks blocks = basin_blocks(basins.count());
+    buffers.lists.resize(std::max<std::size_t>(buffers.lists.size(), blocks.count()));
+    blocks.for_each([&](Index block) {
+        std::vector<Index>& list = buffers.lists[block];
+        const Index first = std::max<Index>(1, blocks.first(block));
+        std::vector<std::size_t> end{0};
+        for (Index number = first; number < blocks.last(block); ++number) {
+            end.push_back(walk_up(donors, basins.pit[number], number, end.back(), list, buffers.basin));
+        }
+        if (list.size() < end.back() + read_beyond) list.resize(end.back() + read_beyond);
+        for (Index number = first; number < blocks.last(block); ++number) {
+            const std::size_t begin = end[number - first];
+            basins.nodes[number] = std::span<const Index>(list).subspan(begin, end[number - first + 1] - begin);
+        }
+    });
+    basins.basin = buffers.basin;
+    return basins;
+}
+
+/// Cells of a grid that have all eight neighbours.
+class InnerCells {
+  public:
+    explicit InnerCells(const Grid& grid)
+        : cols_(grid.cols),
+          last_inner_(grid.cols < 3 ? 0 : grid.size() - grid.cols),
+          per_row_(~std::uint64_t{0} / grid.cols + 1) {}
+
+    /// 2^64·node/cols, whole rows dropped by the overflow, is under 2^64/cols in the first column, and that of the next
+    /// node is in the last: a product in place of a division.
+    bool contains(Index node) const {
+        const std::uint64_t within_row = per_row_ * node;
+        return node >= cols_ && node < last_inner_ && within_row >= per_row_ && within_row + per_row_ >= per_row_;
+    }
+
+  private:
+    Index cols_, last_inner_;
+    std::uint64_t per_row_;
+};
+
+/// Whether a node has a neighbour in a basin of lower number.
+class GridBorders {
+  public:
+    GridBorders(const Grid& grid, std::span<const Index> basin) : grid_(grid), basin_(basin.data()), inner_(grid) {}
+
+    static void fetch(const Index*) {}
+
+    bool touch(Index node) const {
+        if (!inner_.contains(node)) return true;
+        const Index here = basin_[node];
+        const Index* const a = basin_ + node - grid_.cols;
+        const Index* const b = basin_ + node + grid_.cols;
+        const Index* const c = basin_ + node;
+        return ((a[-1] < here) | (a[0] < here) | (a[1] < here) | (c[-1] < here) | (c[1] < here) | (b[-1] < here) |
+                (b[0] < here) | (b[1] < here));
+    }
+
+  private:
+    const Grid& grid_;
+    const Index* basin_;
+    InnerCells inner_;
+};
+
+class MeshBorders {
+  public:
+    MeshBorders(const Mesh& mesh, std::span<const Index> basin) : mesh_(mesh), basin_(basin.data()) {}
+
+    [[gnu::always_inline]] void fetch(const Index* nodes) const { fetch_neighbors(mesh_, nodes[24], nodes[48]); }
+
+    bool touch(Index node) const {
+        Index lowest = none;
+        for (Index at = mesh_.offset[node]; at < mesh_.offset[node + 1]; ++at) {
+            lowest = std::min(lowest, basin_[mesh_.neighbor_list[at]]);
+        }
+        return lowest < basin_[node];
+    }
+
+  private:
+    const Mesh& mesh_;
+    const Index* basin_;
+};
+
+GridBorders borders_of(const Grid& grid, std::span<const Index> basin) { return {grid, basin}; }
+MeshBorders borders_of(const Mesh& mesh, std::span<const Index> basin) { return {mesh, basin}; }
+
+/// The lowest passes from one basin at a time to those of lower number; the others see theirs to it.
+template <Topology T>
+class PassSearch {
+  public:
+    PassSearch(const Terrain<T>& terrain, const LakeBasins& basins)
+        : terrain_(terrain),
+          basins_(basins),
+          borders_(borders_of(terrain.topology, basins.basin)),
+          place_(basins.count(), none) {}
+
+    void search(Index basin) {
+        begin_ = static_cast<Index>(passes_.size());
+        for (const Index& node : basins_.nodes[basin]) {
+            borders_.fetch(&node);
+            if (borders_.touch(node)) offer_passes(basin, node);
+            if (terrain_.boundary[node] == Boundary::open) {
+                keep_lower(outside, pass_straight_out(terrain_.elevation_m, basin, node));
+            }
+        }
+    }
+    std::vector<Pass> take() { return std::move(passes_); }
+
+  private:
+    void offer_passes(Index basin, Index node) {
+        terrain_.topology.neighbors(node, [&](Index neighbor, double, Slot) {
+            const Index other = basins_.basin[neighbor];
+            if (other >= basin || !terrain_.has_data(neighbor)) return;
+            keep_lower(other, pass_between(terrain_.elevation_m, basin, node, other, neighbor));
+        });
+    }
+
+    /// Places of the passes of earlier basins lie before `begin_`.
+    void keep_lower(Index other, const Pass& pass) {
+        const Index place = place_[other];
+        if (place == none || place < begin_) {
+            place_[other] = static_cast<Index>(passes_.size());
+            passes_.push_back(pass);
+        } else if (lower(pass, passes_[place])) {
+            passes_[place] = pass;
+        }
+    }
+
+    const Terrain<T>& terrain_;
+    const LakeBasins& basins_;
+    decltype(borders_of(terrain_.topology, std::span<const Index>())) borders_;
+    std::vector<Index> place_;  // per basin: where the pass to it stands
+    std::vector<Pass> passes_;
+    Index begin_ = 0;
+};
+
+template <Topology T>
+std::vector<Pass> all_passes(const Terrain<T>& terrain, const LakeBasins& basins) {
+    const Blocks blocks(basins.count(), 1024);
+    std::vector<std::vector<Pass>> found(blocks.count());
+    blocks.for_each([&](Index block) {
+        PassSearch<T> borders(terrain, basins);
+        for (Index basin = std::max<Index>(1, blocks.first(block)); basin < blocks.last(block); ++basin) {
+            borders.search(basin);
+        }
+        found[block] = borders.take();
+    });
+    for (Index block = 1; block < blocks.count(); ++block) {
+        found[0].insert(found[0].end(), found[block].begin(), found[block].end());
+    }
+    return std::move(found[0]);
+}
+
+}  // namespace
+
+LakeBasins lake_basins(const Grid& grid, const FlowDirections& directions, std::vector<Index> pit,
+                       LakeBuffers& buffers) {
+    return basins_of(GridDonors(grid, directions), grid.size(), std::move(pit), buffers);
+}
+
+LakeBasins lake_basins(const Mesh& mesh, const FlowDirections& directions, std::vector<Index> pit,
+                       LakeBuffers& buffers) {
+    buffers.receiver.resize(mesh.size());
+    parallel_for(0, mesh.size(), [&](Index first, Index last) {
+        for (Index node = first; node < last; ++node) {
+            buffers.receiver[node] = directions[node] == no_flow ? none : mesh.neighbor(node, directions[node]);
+        }
+    });
+    return basins_of(MeshDonors(mesh, buffers.receiver), mesh.size(), std::move(pit), buffers);
+}
+
+std::vector<Pass> passes_between(const Terrain<Grid>& terrain, const LakeBasins& basins) {
+    return all_passes(terrain, basins);
+}
+
+std::vector<Pass> passes_between(const Terrain<Mesh>& terrain, const LakeBasins& basins) {
+    return all_passes(terrain, basins);
+}
+
+}  // namespace thalweg::terrain
