@@ -136,6 +136,29 @@ TEST_CASE("Channels are painted where the network's lines are") {
     CHECK(is_sentence(error_of([&] { render_dem(dem, "view.png", o, {}); })));
 }
 
+TEST_CASE("A small DEM is not painted as if all of it were water") {
+    const TempFolder folder;
+    const Grid grid = plane_grid(40, 60, 10, 10);
+    std::vector<double> valley(grid.size());
+    for (Index i = 0; i < grid.size(); ++i) valley[i] = 100 + grid.col(i) + 2 * std::abs(grid.row(i) - 19.0);
+    io::write_raster(folder / "valley.tif", grid,
+                     {.west = 500000, .north = 4000000, .cell_width = 10, .cell_height = 10, .crs_wkt = {}}, valley,
+                     {});
+    RenderOptions o = small();
+    o.view = {.azimuth = std::numbers::pi, .elevation = std::numbers::pi / 2, .width = 120, .height = 80};
+    o.color = PictureColor::kelley;
+    o.background = PictureBackground::white;
+    const auto share_of_water = [&] {
+        const Pixels p = decoded(render_dem(folder / "valley.tif", "view.png", o, {}), folder);
+        const double ground = p.count([](int r, int g, int b) { return !is_white(r, g, b); });
+        return p.count([](int r, int g, int b) { return !is_white(r, g, b) && b > r + 10 && b > g; }) / ground;
+    };
+    CHECK(share_of_water() > 0.002);
+    CHECK(share_of_water() < 0.15);
+    o.channel_area_m2 = 200;  // two cells, which a thousandth of the area would be
+    CHECK(share_of_water() > 0.5);
+}
+
 TEST_CASE("Lines become SVG, surfaces do not") {
     RenderOptions o = small();
     o.style = PictureStyle::wireframe;

@@ -66,10 +66,19 @@ std::vector<double> drainage_area(const Raster& raster) {
     return terrain::accumulate(graph, terrain::cell_areas(raster.grid));
 }
 
+/// As elsewhere, but never under 50 cells: on a small DEM a share of its area is a cell or two, and all would be water.
+double painted_channel_area(const Raster& raster) {
+    const double area = data_area(raster);
+    const auto void_cells =
+        std::count_if(raster.values.begin(), raster.values.end(), [](double z) { return std::isnan(z); });
+    const double cell = area / static_cast<double>(raster.values.size() - static_cast<std::size_t>(void_cells));
+    return std::max(default_channel_area(area), 50 * cell);
+}
+
 }  // namespace
 
 std::vector<double> water_of_flow(const Raster& raster, std::optional<double> threshold_m2) {
-    const double threshold = threshold_m2.value_or(default_channel_area(data_area(raster)));
+    const double threshold = threshold_m2.value_or(painted_channel_area(raster));
     const std::vector<double> area = drainage_area(raster);
     Brush brush(raster.grid);
     for (Index node = 0; node < raster.grid.size(); ++node) {
