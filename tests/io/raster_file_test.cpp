@@ -7,6 +7,8 @@
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <thread>
@@ -581,4 +583,30 @@ TEST_CASE("threads read and write at the same time, each with its own errors", "
     }
     for (std::thread& thread : threads) thread.join();
     CHECK(right == std::array<int, 4>{40, 40, 40, 40});
+}
+
+TEST_CASE("Colours and statistics stand in the file itself, and change no value") {
+    const TempFolder temp;
+    const Grid grid = plane_grid(2, 3, 10, 10);
+    const Placement place{.west = 0, .north = 20, .cell_width = 10, .cell_height = 10, .crs_wkt = ""};
+    io::write_raster(temp / "heights.tif", grid, place, std::vector<double>{1000, 1002, no_value, 1004, 1006, 1008}, {});
+    io::write_raster(temp / "codes.tif", grid, place, std::vector<double>{0, 1, 255, 4, 1, 0},
+                     {.type = io::CellType::uint8, .nodata = 255, .colors = {{0, 9, 8, 7}, {4, 30, 20, 10}}});
+    CHECK(std::distance(std::filesystem::directory_iterator(temp / ""), {}) == 2);  // nothing beside them
+    GDALDatasetUniquePtr heights(GDALDataset::Open((temp / "heights.tif").c_str()));
+    double least = 0, most = 0, mean = 0, deviation = 0;
+    CHECK(heights->GetRasterBand(1)->GetStatistics(false, false, &least, &most, &mean, &deviation) == CE_None);
+    CHECK(least == 1000);
+    CHECK(most == 1008);
+    CHECK(mean == Approx(1004));
+    CHECK(deviation == Approx(std::sqrt(8.0)));  // of all cells, as GDAL has it
+    GDALDatasetUniquePtr codes(GDALDataset::Open((temp / "codes.tif").c_str()));
+    const GDALColorTable* colors = codes->GetRasterBand(1)->GetColorTable();
+    REQUIRE(colors != nullptr);
+    CHECK(colors->GetColorEntry(0)->c1 == 9);
+    CHECK(colors->GetColorEntry(4)->c3 == 10);
+    CHECK(colors->GetColorEntry(200)->c2 == 255);
+    const std::vector<double> read = io::read_raster(temp / "codes.tif").raster.values;
+    CHECK(read[3] == 4);
+    CHECK(std::isnan(read[2]));
 }

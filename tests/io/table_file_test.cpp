@@ -7,6 +7,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <tuple>
 
 #include "io/file_limit.hpp"
 #include "support/temp_folder.hpp"
@@ -233,4 +235,45 @@ TEST_CASE("a GeoPackage that cannot be written whole is an error and leaves noth
         CHECK(test::is_sentence(error_of([&] { io::write_geopackage(folder / "g.gpkg", {point_table(3000)}, ""); })));
         CHECK(folder.empty());
     }
+}
+
+TEST_CASE("Styles stand where QGIS looks for them, each the default of its layer") {
+    const TempFolder temp;
+    std::vector<Table> layers = three_layers();
+    layers[0].style = "<qgis/>";
+    layers[1].style = "<qgis version=\"3.22\"/>";
+    io::write_geopackage(temp / "a.gpkg", layers, "");
+    io::write_geopackage(temp / "b.gpkg", layers, "");
+    CHECK(bytes_of(temp / "a.gpkg") == bytes_of(temp / "b.gpkg"));
+    GDALAllRegister();
+    auto* data = GDALDataset::Open((temp / "a.gpkg").c_str(), GDAL_OF_VECTOR);
+    REQUIRE(data != nullptr);
+    CHECK(data->GetLayerCount() == 4);
+    OGRLayer* styles = data->GetLayerByName("layer_styles");
+    REQUIRE(styles != nullptr);
+    CHECK(std::string(styles->GetFIDColumn()) == "id");
+    const OGRFeatureDefn& columns = *styles->GetLayerDefn();
+    const std::vector<std::string> names{"f_table_catalog", "f_table_schema", "f_table_name", "f_geometry_column",
+                                         "styleName", "styleQML", "styleSLD", "useAsDefault",
+                                         "description", "owner", "ui", "update_time"};
+    REQUIRE(columns.GetFieldCount() == static_cast<int>(names.size()));
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        CHECK(columns.GetFieldDefn(static_cast<int>(i))->GetNameRef() == names[i]);
+    }
+    REQUIRE(styles->GetFeatureCount() == 2);
+    for (const auto& [row, table, geometry] : {std::tuple{0, "points", "geom"}, {1, "links", "geom_"}}) {
+        const std::unique_ptr<OGRFeature> style(styles->GetNextFeature());
+        CHECK(std::string(style->GetFieldAsString("f_table_name")) == table);
+        CHECK(std::string(style->GetFieldAsString("f_geometry_column")) == geometry);
+        CHECK(std::string(style->GetFieldAsString("f_table_schema")).empty());
+        CHECK_FALSE(style->IsFieldNull(style->GetFieldIndex("f_table_catalog")));  // QGIS looks for '', not for null
+        CHECK(style->GetFieldAsInteger("useAsDefault") == 1);
+        CHECK(style->GetFieldAsString("styleQML") == layers[static_cast<std::size_t>(row)].style);
+        CHECK(std::string(style->GetFieldAsString("update_time")).starts_with("2000/01/01"));
+    }
+    GDALClose(data);
+    io::write_geopackage(temp / "plain.gpkg", three_layers(), "");
+    data = GDALDataset::Open((temp / "plain.gpkg").c_str(), GDAL_OF_VECTOR);
+    CHECK(data->GetLayerCount() == 3);
+    GDALClose(data);
 }

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/study/tables.hpp"
 
+#include <cpl_minixml.h>
+
+#include <algorithm>
 #include <catch2/catch.hpp>
+#include <string>
 
 #include "support/flow_trees.hpp"
 
@@ -217,4 +221,38 @@ TEST_CASE("Cells of a raster lie at their centres, counted from the north-west")
     const Point p = positions(raster)(2 * 4 + 1);
     CHECK(p.x == 1015);
     CHECK(p.y == 4950);
+}
+
+TEST_CASE("The styles of all layers are XML whose classes each have a symbol") {
+    Statistics s = drawn_statistics();
+    s.channels.max_strahler = 3;
+    for (const Table& layer : network_layers(s, drawn_position, {})) {
+        INFO(layer.name);
+        CPLXMLNode* const parsed = CPLParseXMLString(layer.style.c_str());
+        REQUIRE(parsed != nullptr);
+        const CPLXMLNode* renderer = CPLGetXMLNode(parsed, "=qgis.renderer-v2");
+        REQUIRE(renderer != nullptr);
+        const std::string attribute = CPLGetXMLValue(renderer, "attr", "");
+        const CPLXMLNode* symbols = CPLGetXMLNode(renderer, "symbols");
+        REQUIRE(symbols != nullptr);
+        int count = 0;
+        for (const CPLXMLNode* symbol = symbols->psChild; symbol != nullptr; symbol = symbol->psNext) {
+            CHECK(std::string(CPLGetXMLValue(symbol, "name", "")) == std::to_string(count++));
+            CHECK(CPLGetXMLNode(symbol, "layer.Option") != nullptr);
+        }
+        if (layer.name == "links") CHECK(count == 3);
+        if (layer.name == "junctions") CHECK(count == 3);
+        if (attribute.empty()) {
+            CHECK(count == 1);
+        } else {
+            CHECK(std::ranges::any_of(layer.columns, [&](const Column& c) { return c.name == attribute; }));
+            const CPLXMLNode* category = CPLGetXMLNode(renderer, "categories")->psChild;
+            for (int i = 0; i < count; ++i, category = category->psNext) {
+                REQUIRE(category != nullptr);
+                CHECK(std::string(CPLGetXMLValue(category, "symbol", "")) == std::to_string(i));
+            }
+            CHECK(category == nullptr);
+        }
+        CPLDestroyXMLNode(parsed);
+    }
 }

@@ -111,6 +111,8 @@ std::string free_name(const Table& table, std::string name) {
     return name;
 }
 
+std::string geometry_column(const Table& table) { return free_name(table, "geom"); }
+
 class PackageWriter {
   public:
     PackageWriter(const std::filesystem::path& path, const GdalGuard& gdal) : path_(path), gdal_(gdal) {
@@ -123,6 +125,26 @@ class PackageWriter {
         const std::size_t rows = row_count(table);
         OGRLayer& layer = create_layer(table, crs);
         for (std::size_t row = 0; row < rows; ++row) write_row(layer, table, row);
+    }
+
+    /// The table that QGIS makes when it saves styles in a GeoPackage, with the same columns.
+    void write_styles(const std::vector<Table>& tables) {
+        const auto has_style = [](const Table& table) { return !table.style.empty(); };
+        if (std::none_of(tables.begin(), tables.end(), has_style)) return;
+        CPLStringList options;
+        options.SetNameValue("FID", "id");
+        OGRLayer* layer = dataset_->CreateLayer("layer_styles", nullptr, wkbNone, options.List());
+        check(layer == nullptr ? OGRERR_FAILURE : OGRERR_NONE);
+        for (const char* name : {"f_table_catalog", "f_table_schema", "f_table_name", "f_geometry_column", "styleName",
+                                 "styleQML", "styleSLD"}) {
+            add_field(*layer, name, OFTString);
+        }
+        add_field(*layer, "useAsDefault", OFTInteger, OFSTBoolean);
+        for (const char* name : {"description", "owner", "ui"}) add_field(*layer, name, OFTString);
+        add_field(*layer, "update_time", OFTDateTime);
+        for (const Table& table : tables) {
+            if (has_style(table)) write_style(*layer, table);
+        }
     }
 
     void begin() { check(dataset_->StartTransaction()); }
@@ -141,7 +163,7 @@ class PackageWriter {
     OGRLayer& create_layer(const Table& table, OGRSpatialReference& crs) {
         CPLStringList options;
         options.SetNameValue("FID", free_name(table, "fid").c_str());
-        options.SetNameValue("GEOMETRY_NAME", free_name(table, "geom").c_str());
+        options.SetNameValue("GEOMETRY_NAME", geometry_column(table).c_str());
         const OGRwkbGeometryType type = wkb_type(table.kind);
         OGRLayer* layer =
             dataset_->CreateLayer(table.name.c_str(), type == wkbNone ? nullptr : &crs, type, options.List());
@@ -151,6 +173,27 @@ class PackageWriter {
             check(layer->CreateField(const_cast<OGRFieldDefn*>(&field), FALSE));
         }
         return *layer;
+    }
+
+    void add_field(OGRLayer& layer, const char* name, OGRFieldType type, OGRFieldSubType subtype = OFSTNone) {
+        OGRFieldDefn field(name, type);
+        field.SetSubType(subtype);
+        check(layer.CreateField(&field, FALSE));
+    }
+
+    void write_style(OGRLayer& layer, const Table& table) {
+        OGRFeature feature(layer.GetLayerDefn());
+        for (const char* empty : {"f_table_catalog", "f_table_schema", "styleSLD", "owner"})
+            feature.SetField(empty, "");
+        feature.SetField("f_table_name", table.name.c_str());
+        feature.SetField("f_geometry_column",
+                         table.kind == GeometryKind::no_geometry ? "" : geometry_column(table).c_str());
+        feature.SetField("styleName", table.name.c_str());
+        feature.SetField("styleQML", table.style.c_str());
+        feature.SetField("useAsDefault", 1);
+        feature.SetField("description", "written by thalweg");
+        feature.SetField("update_time", 2000, 1, 1);
+        check(layer.CreateFeature(&feature));
     }
 
     void write_row(OGRLayer& layer, const Table& table, std::size_t row) {
@@ -187,6 +230,7 @@ void write_geopackage(const std::filesystem::path& path, const std::vector<Table
         PackageWriter writer(path, gdal);
         writer.begin();
         for (const Table& table : layers) writer.write(table, crs);
+        writer.write_styles(layers);
         writer.end();
     } catch (const Error&) {
         remove_package(path);

@@ -93,6 +93,35 @@ void place(GDALDataset& dataset, const Placement& placement) {
 void describe(GDALRasterBand& band, const Layer& layer) {
     if (layer.type == CellType::float64 || layer.nodata) band.SetNoDataValue(nodata_tag(layer));
     if (!layer.description.empty()) band.SetDescription(layer.description.c_str());
+    if (layer.colors.empty()) return;
+    GDALColorTable table;
+    const GDALColorEntry white{255, 255, 255, 255};
+    for (int value = 0; value < 256; ++value) table.SetColorEntry(value, &white);
+    for (const CellColor& color : layer.colors) {
+        const GDALColorEntry entry{color.red, color.green, color.blue, 255};
+        table.SetColorEntry(color.value, &entry);
+    }
+    band.SetColorTable(&table);
+}
+
+/// Least, largest, mean and standard deviation of the cells with data, which GDAL would else have to look for.
+void tell_statistics(GDALRasterBand& band, std::span<const double> cells, const Layer& layer) {
+    double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0, squares = 0;
+    std::size_t count = 0;
+    const auto first = std::ranges::find_if_not(cells, [](double value) { return std::isnan(value); });
+    const double origin = first == cells.end() ? 0 : *first;  // without it the squares of high land lose their digits
+    for (const double value : cells) {
+        if (std::isnan(value) || (layer.nodata && value == *layer.nodata)) continue;
+        least = std::min(least, value);
+        most = std::max(most, value);
+        sum += value - origin;
+        squares += (value - origin) * (value - origin);
+        ++count;
+    }
+    if (count == 0) return;
+    const double mean = sum / static_cast<double>(count);
+    const double variance = squares / static_cast<double>(count) - mean * mean;
+    band.SetStatistics(least, most, origin + mean, std::sqrt(std::max(variance, 0.0)));
 }
 
 /// GDAL's close cannot fail, so a full disk can leave a file that looks complete: every tile must lie inside it.
@@ -118,6 +147,7 @@ CPLErr fill(GDALDataset& dataset, const Grid& grid, const Placement& placement, 
     place(dataset, placement);
     GDALRasterBand& band = *dataset.GetRasterBand(1);
     describe(band, layer);
+    if (layer.colors.empty()) tell_statistics(band, cells, layer);
     const int cols = static_cast<int>(grid.cols), rows = static_cast<int>(grid.rows);
     return band.RasterIO(GF_Write, 0, 0, cols, rows, cells.data(), cols, rows, GDT_Float64, 0, 0, nullptr);
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "study/layer_styles.hpp"
 #include "study/report_json.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/statistics.hpp"
@@ -100,12 +101,18 @@ void write_rasters(const Raster& dem, const RasterMeasurement& m, const std::fil
           }(),
           {.nodata = {}, .description = "drainage area (m2)"});
     write("flow_direction.tif", esri_codes(m.directions, dem.values),
-          {.type = io::CellType::uint8, .nodata = 255, .description = "D8 direction (ESRI codes, 0 outlet)"});
+          {.type = io::CellType::uint8,
+           .nodata = 255,
+           .description = "D8 direction (ESRI codes, 0 outlet)",
+           .colors = direction_colors()});
     const auto as_numbers = [](const std::vector<Index>& values) {
         return std::vector<double>(values.begin(), values.end());
     };
     write("strahler.tif", as_numbers(m.statistics.strahler_of),
-          {.type = io::CellType::uint8, .nodata = {}, .description = "Strahler order (0: no channel)"});
+          {.type = io::CellType::uint8,
+           .nodata = {},
+           .description = "Strahler order (0: no channel)",
+           .colors = order_colors()});
     write("shreve.tif", as_numbers(m.statistics.shreve_of),
           {.type = io::CellType::int32, .nodata = {}, .description = "Shreve magnitude (0: no channel)"});
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // One row per basin.
 #include "study/columns.hpp"
+#include "study/layer_styles.hpp"
 #include "thalweg/study/tables.hpp"
 
 namespace thalweg::study {
@@ -81,6 +82,7 @@ Table basins_table(const Statistics& s, const PositionOf& position, std::vector<
     Table table = basin_values(s, position);
     table.kind = GeometryKind::polygon;
     table.polygons = std::move(outlines);
+    table.style = basins_style();
     return table;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "study/columns.hpp"
+#include "study/layer_styles.hpp"
 
 namespace thalweg::study {
 namespace {
@@ -69,6 +70,7 @@ Table links_table(const Statistics& s, const PositionOf& position) {
     const channel::StreamNetwork& network = s.network;
     Table table = link_values(s);
     table.kind = GeometryKind::line;
+    table.style = links_style(s.channels.max_strahler);
     for (Index link = 0; link < network.size(); ++link) {
         std::vector<Point>& line = table.geometry.emplace_back();
         for (const Index node : network.nodes_of(link)) line.push_back(position(node));
@@ -89,6 +91,7 @@ Table junctions_table(const Statistics& s, const PositionOf& position) {
         shreve.push_back(s.shreve_of[node]);
         table.geometry.push_back({position(node)});
     }
+    table.style = junctions_style();
     table.columns = {
         {"kind", kind}, {"inflows", inflows}, {"downstream", downstream}, {"strahler", strahler}, {"shreve", shreve}};
     return table;
@@ -107,6 +110,7 @@ Table knickpoints_table(const Statistics& s, const PositionOf& position) {
                 .kind = GeometryKind::point,
                 .geometry = {}};
     for (const auto& k : rows) table.geometry.push_back({position(profile.node[k.row])});
+    table.style = knickpoints_style();
     return table;
 }
 

@@ -27,6 +27,7 @@ struct Table {
     GeometryKind kind = GeometryKind::no_geometry;
     std::vector<std::vector<Point>> geometry;
     std::vector<MultiPolygon> polygons = {};
+    std::string style = {};  ///< how QGIS draws the layer (its QML), where a format can carry it
 };
 
 /// Number of rows. Throws Error if the columns (or the geometry) are of unequal length, or if there is geometry that

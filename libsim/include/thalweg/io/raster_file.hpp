@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -39,15 +40,22 @@ enum class Layout {
     cloud_optimized  ///< tiles of 512², overviews, headers first (GDAL's COG driver): read in parts over a network
 };
 
+/// Colour of the cells with a certain value.
+struct CellColor {
+    std::uint8_t value;
+    std::uint8_t red, green, blue;
+};
+
 /// What a written raster holds.
 struct Layer {
     CellType type = CellType::float64;
     std::optional<double> nodata = {};  ///< tag to write; NaN in memory becomes this
     std::string description = {};       ///< of the band, with its unit
     Layout layout = Layout::tiled;
+    std::vector<CellColor> colors = {};  ///< of uint8; the other values are white. None: no colour table
 };
 
-/// Writes a GeoTIFF (ZSTD with predictor where GDAL has it, else DEFLATE), bytes a function of the values alone.
+/// Writes a GeoTIFF with the statistics of its values, by which viewers stretch their colours (ZSTD with predictor where GDAL has it, else DEFLATE), bytes a function of the values alone.
 /// Throws Error when it cannot be written whole (permissions, full disk).
 void write_raster(const std::filesystem::path&, const Grid&, const Placement&, std::span<const double> values,
                   const Layer&);

@@ -20,7 +20,8 @@ Table read_csv(const std::filesystem::path&);
 Table read_csv(const std::filesystem::path&, std::vector<std::size_t>& lines);
 
 /// Writes tables as layers of a GeoPackage, bytes a function of the contents alone (fixed date).
-/// `crs_wkt` empty: an undefined Cartesian system.
+/// `crs_wkt` empty: an undefined Cartesian system. Styles go into the table `layer_styles`, each as its layer's default,
+/// where QGIS looks for them.
 void write_geopackage(const std::filesystem::path&, const std::vector<Table>& layers, const std::string& crs_wkt);
 
 }  // namespace thalweg::io
