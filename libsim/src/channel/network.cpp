@@ -17,10 +17,10 @@ Index channel_receiver(const FlowGraph& graph, std::span<const std::uint8_t> cha
 }
 
 /// Number of channel donors, counted up to 2: enough to tell sources (0), links (1) and junctions (2).
-std::vector<std::uint8_t> donor_counts(const FlowGraph& graph, std::span<const std::uint8_t> channel) {
+std::vector<std::uint8_t> donor_counts(const FlowGraph& graph, std::span<const std::uint8_t> channel,
+                                       std::span<const Index> order) {
     std::vector<std::uint8_t> donors(graph.size(), 0);
-    for (const Index node : graph.order) {
-        if (!channel[node]) continue;
+    for (const Index node : order) {
         const Index receiver = channel_receiver(graph, channel, node);
         if (receiver != none && donors[receiver] < 2) ++donors[receiver];
     }
@@ -34,11 +34,10 @@ struct Links {
     std::vector<Index> lower_end;   ///< per link: its last node
 };
 
-Links number_links(const FlowGraph& graph, std::span<const std::uint8_t> channel,
+Links number_links(const FlowGraph& graph, std::span<const std::uint8_t> channel, std::span<const Index> order,
                    std::span<const std::uint8_t> donors) {
     Links links{.of_node = std::vector<Index>(graph.size(), none), .downstream = {}, .lower_end = {}};
-    for (const Index node : graph.order) {
-        if (!channel[node]) continue;
+    for (const Index node : order) {
         const Index receiver = channel_receiver(graph, channel, node);
         if (receiver == none) continue;
         const Index below = links.of_node[receiver];
@@ -55,17 +54,17 @@ Links number_links(const FlowGraph& graph, std::span<const std::uint8_t> channel
 }
 
 /// Lays the nodes of every link out in a row, running downstream.
-void collect_nodes(const FlowGraph& graph, const Links& links, StreamNetwork& network) {
+void collect_nodes(std::span<const Index> order, const Links& links, StreamNetwork& network) {
     const Index count = network.size();
     network.offset.assign(count + 1, 0);
-    for (const Index node : graph.order) {
+    for (const Index node : order) {
         if (links.of_node[node] != none) ++network.offset[links.of_node[node] + 1];
     }
     for (Index link = 0; link < count; ++link) network.offset[link + 1] += network.offset[link] + 1;
     network.nodes.resize(network.offset[count]);
     std::vector<Index> next(network.offset.begin() + 1, network.offset.end());
     for (Index link = 0; link < count; ++link) network.nodes[--next[link]] = links.lower_end[link];
-    for (const Index node : graph.order) {  // downstream first, so each link fills up from its lower end
+    for (const Index node : order) {  // downstream first, so each link fills up from its lower end
         const Index link = links.of_node[node];
         if (link != none) network.nodes[--next[link]] = node;
     }
@@ -84,6 +83,34 @@ void measure_links(const FlowGraph& graph, std::span<const std::uint8_t> donors,
         network.drop_m.push_back(elevation_m[nodes.front()] - elevation_m[last]);
         network.area_m2.push_back(drainage_area_m2[shared ? nodes[nodes.size() - 2] : last]);
     }
+}
+
+/// Order of every channel node; the others keep 0.
+std::vector<Index> orders_along(const FlowGraph& graph, std::span<const std::uint8_t> channel,
+                                std::span<const Index> nodes) {
+    std::vector<Index> order(graph.size(), 0);          // highest inflow so far, then the node's own
+    std::vector<std::uint8_t> shared(graph.size(), 0);  // 1 if two or more inflows have it
+    for (const Index node : nodes | std::views::reverse) {
+        order[node] = std::max<Index>(1, order[node] + shared[node]);
+        const Index receiver = channel_receiver(graph, channel, node);
+        if (receiver == none) continue;
+        if (order[node] >= order[receiver]) {
+            shared[receiver] = order[node] == order[receiver];
+            order[receiver] = order[node];
+        }
+    }
+    return order;
+}
+
+std::vector<Index> magnitudes_along(const FlowGraph& graph, std::span<const std::uint8_t> channel,
+                                    std::span<const Index> nodes) {
+    std::vector<Index> magnitude(graph.size(), 0);
+    for (const Index node : nodes | std::views::reverse) {
+        if (magnitude[node] == 0) magnitude[node] = 1;
+        const Index receiver = channel_receiver(graph, channel, node);
+        if (receiver != none) magnitude[receiver] += magnitude[node];
+    }
+    return magnitude;
 }
 
 }  // namespace
@@ -105,51 +132,42 @@ std::vector<std::uint8_t> channels_from_heads(const FlowGraph& graph, std::span<
     return channel;
 }
 
-std::vector<Index> channel_heads(const FlowGraph& graph, std::span<const std::uint8_t> channel) {
-    const auto donors = donor_counts(graph, channel);
-    std::vector<Index> heads;
-    for (Index node = 0; node < graph.size(); ++node) {
-        if (channel[node] && donors[node] == 0) heads.push_back(node);
+std::vector<Index> channel_order(const FlowGraph& graph, std::span<const std::uint8_t> channel) {
+    constexpr std::size_t ahead = 32;
+    std::vector<Index> nodes;
+    for (std::size_t at = 0; at < graph.order.size(); ++at) {
+        if (at + ahead < graph.order.size()) __builtin_prefetch(&channel[graph.order[at + ahead]]);
+        if (channel[graph.order[at]]) nodes.push_back(graph.order[at]);
     }
+    return nodes;
+}
+
+std::vector<Index> channel_heads(const FlowGraph& graph, std::span<const std::uint8_t> channel) {
+    std::vector<Index> heads = channel_order(graph, channel);
+    const auto donors = donor_counts(graph, channel, heads);
+    std::erase_if(heads, [&](Index node) { return donors[node] > 0; });
+    std::ranges::sort(heads);
     return heads;
 }
 
 std::vector<Index> strahler_orders(const FlowGraph& graph, std::span<const std::uint8_t> channel) {
-    std::vector<Index> order(graph.size(), 0);          // highest inflow so far, then the node's own
-    std::vector<std::uint8_t> shared(graph.size(), 0);  // 1 if two or more inflows have it
-    for (const Index node : graph.order | std::views::reverse) {
-        if (!channel[node]) continue;
-        order[node] = std::max<Index>(1, order[node] + shared[node]);
-        const Index receiver = channel_receiver(graph, channel, node);
-        if (receiver == none) continue;
-        if (order[node] >= order[receiver]) {
-            shared[receiver] = order[node] == order[receiver];
-            order[receiver] = order[node];
-        }
-    }
-    return order;
+    return orders_along(graph, channel, channel_order(graph, channel));
 }
 
 std::vector<Index> shreve_magnitudes(const FlowGraph& graph, std::span<const std::uint8_t> channel) {
-    std::vector<Index> magnitude(graph.size(), 0);
-    for (const Index node : graph.order | std::views::reverse) {
-        if (!channel[node]) continue;
-        if (magnitude[node] == 0) magnitude[node] = 1;
-        const Index receiver = channel_receiver(graph, channel, node);
-        if (receiver != none) magnitude[receiver] += magnitude[node];
-    }
-    return magnitude;
+    return magnitudes_along(graph, channel, channel_order(graph, channel));
 }
 
 StreamNetwork stream_network(const FlowGraph& graph, std::span<const std::uint8_t> channel,
                              std::span<const double> drainage_area_m2, std::span<const double> elevation_m) {
-    const auto donors = donor_counts(graph, channel);
-    Links links = number_links(graph, channel, donors);
+    const std::vector<Index> nodes = channel_order(graph, channel);
+    const auto donors = donor_counts(graph, channel, nodes);
+    Links links = number_links(graph, channel, nodes, donors);
     StreamNetwork network;
     network.downstream = std::move(links.downstream);
-    collect_nodes(graph, links, network);
-    const auto order = strahler_orders(graph, channel);
-    const auto magnitude = shreve_magnitudes(graph, channel);
+    collect_nodes(nodes, links, network);
+    const auto order = orders_along(graph, channel, nodes);
+    const auto magnitude = magnitudes_along(graph, channel, nodes);
     for (Index link = 0; link < network.size(); ++link) {
         network.strahler.push_back(order[network.nodes[network.offset[link]]]);
         network.shreve.push_back(magnitude[network.nodes[network.offset[link]]]);

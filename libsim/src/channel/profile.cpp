@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "thalweg/channel/network.hpp"
 #include "thalweg/core/statistics.hpp"
 
 namespace thalweg::channel {
@@ -32,8 +33,7 @@ Profile channel_profile(const terrain::FlowGraph& graph, std::span<const std::ui
     Profile profile;
     std::vector<Index> place(graph.size(), none);
     Index rivers = 0;
-    for (const Index node : graph.order) {
-        if (!channel[node]) continue;
+    for (const Index node : channel_order(graph, channel)) {
         const Index receiver = graph.receiver[node];
         const Index below = receiver == none ? none : place[receiver];
         place[node] = profile.size();

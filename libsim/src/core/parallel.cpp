@@ -19,6 +19,10 @@ ThreadLimit::ThreadLimit(int threads)
 
 ThreadLimit::~ThreadLimit() = default;
 
+int thread_limit() {
+    return static_cast<int>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
 void parallel_for(Index begin, Index end, const std::function<void(Index, Index)>& body, Index grain) {
     tbb::parallel_for(tbb::blocked_range<Index>(begin, end, grain),
                       [&](const tbb::blocked_range<Index>& piece) { body(piece.begin(), piece.end()); });

@@ -11,6 +11,7 @@
 
 #include "io/gdal_guard.hpp"
 #include "thalweg/core/error.hpp"
+#include "thalweg/core/parallel.hpp"
 #include "thalweg/io/raster_file.hpp"
 
 namespace thalweg::io {
@@ -39,6 +40,9 @@ CPLStringList creation_options(GDALDriver& driver, CellType type) {
     options.SetNameValue("BLOCKXSIZE", fmt::format("{}", tile).c_str());
     options.SetNameValue("BLOCKYSIZE", fmt::format("{}", tile).c_str());
     options.SetNameValue("COMPRESS", offers_zstd(driver) ? "ZSTD" : "DEFLATE");
+    // GDAL's own level, 9, takes twice as long for files 7 % smaller.
+    if (offers_zstd(driver)) options.SetNameValue("ZSTD_LEVEL", "1");
+    options.SetNameValue("NUM_THREADS", fmt::format("{}", thread_limit()).c_str());
     options.SetNameValue("PREDICTOR", type == CellType::float64 ? "3" : "2");
     options.SetNameValue("BIGTIFF", "IF_SAFER");
     return options;
@@ -57,14 +61,29 @@ CPLStringList cloud_options(GDALDriver& driver, CellType type) {
 
 double nodata_tag(const Layer& layer) { return layer.nodata.value_or(std::numeric_limits<double>::quiet_NaN()); }
 
-/// Whole numbers of the type's range, with no data replaced; GDAL would clamp and round in silence.
-std::vector<double> checked_values(std::span<const double> values, const Layer& layer,
-                                   const std::filesystem::path& path) {
-    std::vector<double> cells(values.begin(), values.end());
-    for (double& value : cells) {
-        if (std::isnan(value)) value = nodata_tag(layer);
+/// What is written: the values themselves or, where no data has a tag of its own, a copy with that in their place.
+class Cells {
+  public:
+    Cells(std::span<const double> values, const Layer& layer) : values_(values) {
+        const double tag = nodata_tag(layer);
+        if (std::isnan(tag)) return;
+        copy_.assign(values.begin(), values.end());
+        for (double& value : copy_) value = std::isnan(value) ? tag : value;
+        values_ = copy_;
     }
-    if (layer.type == CellType::float64) return cells;
+    Cells(const Cells&) = delete;
+    Cells& operator=(const Cells&) = delete;
+
+    std::span<const double> values() const { return values_; }
+
+  private:
+    std::vector<double> copy_;
+    std::span<const double> values_;
+};
+
+/// Throws Error unless these are whole numbers of the type's range; GDAL would clamp and round in silence.
+void check_values(std::span<const double> cells, const Layer& layer, const std::filesystem::path& path) {
+    if (layer.type == CellType::float64) return;
     const bool bytes = layer.type == CellType::uint8;
     const double lowest = bytes ? 0 : std::numeric_limits<std::int32_t>::min();
     const double highest = bytes ? 255 : std::numeric_limits<std::int32_t>::max();
@@ -73,7 +92,6 @@ std::vector<double> checked_values(std::span<const double> values, const Layer& 
         throw Error(fmt::format("{} cannot hold {}: its cells are whole numbers from {} to {}", path.string(), value,
                                 lowest, highest));
     }
-    return cells;
 }
 
 void place(GDALDataset& dataset, const Placement& placement) {
@@ -142,19 +160,20 @@ bool tiles_lie_inside(const std::filesystem::path& path, const Grid& grid, Layou
     return true;
 }
 
-CPLErr fill(GDALDataset& dataset, const Grid& grid, const Placement& placement, std::vector<double>& cells,
+CPLErr fill(GDALDataset& dataset, const Grid& grid, const Placement& placement, std::span<const double> cells,
             const Layer& layer) {
     place(dataset, placement);
     GDALRasterBand& band = *dataset.GetRasterBand(1);
     describe(band, layer);
     if (layer.colors.empty()) tell_statistics(band, cells, layer);
     const int cols = static_cast<int>(grid.cols), rows = static_cast<int>(grid.rows);
-    return band.RasterIO(GF_Write, 0, 0, cols, rows, cells.data(), cols, rows, GDT_Float64, 0, 0, nullptr);
+    void* const read_only = const_cast<double*>(cells.data());  // one function reads and writes
+    return band.RasterIO(GF_Write, 0, 0, cols, rows, read_only, cols, rows, GDT_Float64, 0, 0, nullptr);
 }
 
 /// The driver for cloud-optimized files copies only, so those are made in memory first.
 CPLErr write_cells(const std::filesystem::path& path, const Grid& grid, const Placement& placement,
-                   std::vector<double> cells, const Layer& layer, GdalGuard& gdal) {
+                   std::span<const double> cells, const Layer& layer, GdalGuard& gdal) {
     const bool tiled = layer.layout == Layout::tiled;
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(tiled ? "GTiff" : "MEM");
     const CPLStringList options = tiled ? creation_options(*driver, layer.type) : CPLStringList();
@@ -174,8 +193,8 @@ CPLErr write_cells(const std::filesystem::path& path, const Grid& grid, const Pl
 }
 
 void write_file(const std::filesystem::path& path, const Grid& grid, const Placement& placement,
-                std::vector<double> cells, const Layer& layer, GdalGuard& gdal) {
-    const CPLErr status = write_cells(path, grid, placement, std::move(cells), layer, gdal);
+                std::span<const double> cells, const Layer& layer, GdalGuard& gdal) {
+    const CPLErr status = write_cells(path, grid, placement, cells, layer, gdal);
     if (status != CE_None || gdal.failed() || !tiles_lie_inside(path, grid, layer.layout)) unwritten(path, gdal);
 }
 
@@ -186,10 +205,11 @@ void write_raster(const std::filesystem::path& path, const Grid& grid, const Pla
     if (values.size() != grid.size()) {
         throw Error(fmt::format("{} would need {} values, not {}", path.string(), grid.size(), values.size()));
     }
-    std::vector<double> cells = checked_values(values, layer, path);
+    const Cells cells(values, layer);
+    check_values(cells.values(), layer, path);
     GdalGuard gdal;
     try {
-        write_file(path, grid, placement, std::move(cells), layer, gdal);
+        write_file(path, grid, placement, cells.values(), layer, gdal);
     } catch (const Error&) {
         std::error_code ignored;
         if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);

@@ -85,21 +85,22 @@ std::vector<double> esri_codes(const FlowDirections& directions, std::span<const
     return codes;
 }
 
-void write_rasters(const Raster& dem, const RasterMeasurement& m, const std::filesystem::path& folder) {
+/// The areas, which nobody needs afterwards, with holes where there are no data.
+std::vector<double> take_area(const Raster& dem, RasterMeasurement& m) {
+    const bool divided = !m.terrain.divided_area_m2.empty();
+    std::vector<double> area = std::move(divided ? m.terrain.divided_area_m2 : m.terrain.drainage_area_m2);
+    for (std::size_t i = 0; i < area.size(); ++i) {
+        if (std::isnan(dem.values[i])) area[i] = dem.values[i];
+    }
+    return area;
+}
+
+void write_rasters(const Raster& dem, RasterMeasurement& m, const std::filesystem::path& folder) {
     const auto write = [&](const char* name, std::span<const double> values, io::Layer layer) {
         io::write_raster(folder / name, dem.grid, dem.placement, values, layer);
     };
     write("filled.tif", m.terrain.elevation_m, {.nodata = {}, .description = "conditioned elevation (m)"});
-    write("drainage_area.tif",
-          [&] {
-              const bool divided = !m.terrain.divided_area_m2.empty();
-              std::vector<double> area = divided ? m.terrain.divided_area_m2 : m.terrain.drainage_area_m2;
-              for (std::size_t i = 0; i < area.size(); ++i) {
-                  if (std::isnan(dem.values[i])) area[i] = dem.values[i];
-              }
-              return area;
-          }(),
-          {.nodata = {}, .description = "drainage area (m2)"});
+    write("drainage_area.tif", take_area(dem, m), {.nodata = {}, .description = "drainage area (m2)"});
     write("flow_direction.tif", esri_codes(m.directions, dem.values),
           {.type = io::CellType::uint8,
            .nodata = 255,

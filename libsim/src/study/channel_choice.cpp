@@ -13,11 +13,12 @@
 namespace thalweg::study {
 namespace {
 
-/// Drainage area by which channels begin. Divided flow may lose water along a path of the graph; a channel that has
-/// begun goes on.
-std::vector<double> initiation_area(const RoutedTerrain& terrain) {
-    if (terrain.divided_area_m2.empty()) return terrain.drainage_area_m2;
-    return terrain::largest_upstream(terrain.graph, terrain.divided_area_m2);
+/// Calls use(area) with the drainage area by which channels begin. Divided flow may lose water along a path of the
+/// graph; a channel that has begun goes on.
+template <class Use>
+auto with_initiation_area(const RoutedTerrain& terrain, const Use& use) {
+    if (terrain.divided_area_m2.empty()) return use(terrain.drainage_area_m2);
+    return use(terrain::largest_upstream(terrain.graph, terrain.divided_area_m2));
 }
 
 /// A·S² with the area of the routing that was asked for.
@@ -91,8 +92,9 @@ MeasureOptions with_channels_chosen(const RoutedTerrain& terrain, const MeasureO
                                     ChannelEvidence& evidence) {
     MeasureOptions chosen = options;
     if (options.channels == ChannelRule::drop) {
-        chosen.channel_area_m2 =
-            chosen_threshold(terrain, options, initiation_area(terrain), candidate_areas(terrain), evidence);
+        chosen.channel_area_m2 = with_initiation_area(terrain, [&](const std::vector<double>& area) {
+            return chosen_threshold(terrain, options, area, candidate_areas(terrain), evidence);
+        });
     }
     if (options.channels == ChannelRule::slope_area) {
         chosen.heads = ChannelHeads{.cells = heads_by_product(terrain, options, evidence)};
@@ -108,7 +110,8 @@ std::span<const std::uint8_t> nodes_in_use(const RoutedTerrain& terrain, const M
 std::vector<std::uint8_t> channel_nodes(const RoutedTerrain& terrain, const MeasureOptions& options,
                                         double threshold_m2) {
     if (options.heads) return channel::channels_from_heads(terrain.graph, options.heads->cells);
-    return channel::channels_by_area(initiation_area(terrain), threshold_m2);
+    return with_initiation_area(
+        terrain, [&](const std::vector<double>& area) { return channel::channels_by_area(area, threshold_m2); });
 }
 
 std::vector<std::uint8_t> channels_in_use(const RoutedTerrain& terrain, const MeasureOptions& options,

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "study/basin_statistics.hpp"
+#include "study/carved_rivers.hpp"
 #include "study/channel_choice.hpp"
 #include "study/conditioning.hpp"
 #include "thalweg/core/error.hpp"
@@ -137,21 +138,6 @@ double reference_relief(const RasterMeasurement& m, std::span<const double> grou
     return highest - lowest;
 }
 
-/// The terrain along which slopes are measured: never filled, cut through where pits were.
-RoutedTerrain carved_terrain(const Raster& raster, const std::vector<Boundary>& boundary, ConditioningReport& report) {
-    const Grid& grid = raster.grid;
-    RoutedTerrain t;
-    FlowDirections directions = terrain::route(grid, raster.values, boundary);
-    report.flat_cells = terrain::resolve_flats(grid, raster.values, boundary, directions);
-    report.pits = terrain::drain_lakes(grid, raster.values, boundary, directions);
-    t.graph = terrain::flow_graph(grid, raster.values, directions);
-    t.elevation_m = terrain::carve(t.graph, raster.values);
-    t.cell_area_m2 = terrain::cell_areas(grid);
-    t.drainage_area_m2 = terrain::accumulate(t.graph, t.cell_area_m2);
-    t.complete = terrain::complete_catchments(grid, t.graph, boundary);
-    return t;
-}
-
 void report_changes(const Raster& raster, const std::vector<double>& surface, ConditioningReport& report) {
     for (Index node = 0; node < raster.grid.size(); ++node) {
         const double change = std::abs(surface[node] - raster.values[node]);
@@ -161,14 +147,12 @@ void report_changes(const Raster& raster, const std::vector<double>& surface, Co
     }
 }
 
-std::vector<channel::SlopeAreaPoint> segments(const RoutedTerrain& carved, RasterMeasurement& m,
-                                              const MeasureOptions& options, double threshold_m2,
-                                              std::span<const double> ground_m) {
-    const double relief = reference_relief(m, ground_m, threshold_m2, options);
+std::vector<channel::SlopeAreaPoint> segments(const RoutedTerrain& carved, const MeasureOptions& options,
+                                              std::span<const double> ground_m, double relief, RasterMeasurement& m) {
     m.vertical_quantum_m = channel::vertical_quantum(ground_m);
     m.segment_drop_m = std::max(0.025 * relief, 3 * m.vertical_quantum_m);
     if (!(m.segment_drop_m > 0)) return {};
-    const auto channels = channels_in_use(carved, options, threshold_m2);
+    const auto channels = channels_in_use(carved, options, *options.channel_area_m2);
     return channel::fixed_drop_segments(carved.graph, carved.drainage_area_m2, carved.elevation_m, channels,
                                         {.drop_m = m.segment_drop_m, .smallest_drop_m = 3 * m.vertical_quantum_m});
 }
@@ -286,15 +270,14 @@ ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions& opt
 RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& options) {
     const auto boundary = boundary_of(raster, options);
     RasterMeasurement m;
-    RoutedTerrain carved = carved_terrain(raster, boundary, m.conditioning);
-    m.carved_elevation_m = carved.elevation_m;
+    m.terrain.cell_area_m2 = terrain::cell_areas(raster.grid);
+    const CarvedRivers rivers = carved_rivers(raster, boundary, options, m.terrain.cell_area_m2, m.conditioning);
 
     Conditioned c = conditioned(raster, boundary, options.conditioning);
     m.directions = std::move(c.directions);
     m.conditioning.flat_cells = c.flat_cells;
     std::vector<double> surface = std::move(c.surface_m);
     m.terrain.graph = terrain::flow_graph(raster.grid, surface, m.directions);
-    m.terrain.cell_area_m2 = carved.cell_area_m2;
     m.terrain.drainage_area_m2 = terrain::accumulate(m.terrain.graph, m.terrain.cell_area_m2);
     m.terrain.divided_area_m2 = divided_area(raster.grid, surface, m, options.routing);
     m.terrain.complete = terrain::complete_catchments(raster.grid, m.terrain.graph, boundary);
@@ -307,8 +290,12 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
     m.area_m2 = total_area(m.terrain);
     MeasureOptions resolved = with_channels_chosen(m.terrain, options, m.channel_evidence);
     if (!resolved.channel_area_m2) resolved.channel_area_m2 = default_channel_area(m.area_m2);
-    auto slopes = segments(carved, m, resolved, *resolved.channel_area_m2, raster.values);
-    ChiStatistics chi = measure_chi(carved, resolved, *resolved.channel_area_m2, m.segment_drop_m);
+    const double threshold = *resolved.channel_area_m2;
+    const double relief = reference_relief(m, raster.values, threshold, resolved);
+    const MeasureOptions along = on_rivers(rivers, resolved);
+    auto slopes = segments(rivers.terrain, along, raster.values, relief, m);
+    ChiStatistics chi = measure_chi(rivers.terrain, along, threshold, m.segment_drop_m);
+    name_raster_nodes(rivers, slopes, chi);
     m.statistics = measure(m.terrain, raster.values, resolved, std::move(slopes), std::move(chi));
     const auto basins = static_cast<Index>(m.statistics.basins.size());
     add_perimeters(terrain::basin_perimeters(raster.grid, m.statistics.basin_of, basins), m.statistics);

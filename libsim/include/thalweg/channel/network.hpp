@@ -37,6 +37,10 @@ std::vector<std::uint8_t> channels_by_area(std::span<const double> drainage_area
 /// until it meets one followed before.
 std::vector<std::uint8_t> channels_from_heads(const terrain::FlowGraph&, std::span<const Index> heads);
 
+/// The channel nodes, each after its receiver. Channels are few among the nodes of a DEM, so that everything else is
+/// looked at once only.
+std::vector<Index> channel_order(const terrain::FlowGraph&, std::span<const std::uint8_t> channel);
+
 /// Channel nodes without a channel donor, ascending: where channels begin. `channels_from_heads` of them gives the same
 /// channels again, provided that no channel ends before its water does.
 std::vector<Index> channel_heads(const terrain::FlowGraph&, std::span<const std::uint8_t> channel);

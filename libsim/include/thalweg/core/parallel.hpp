@@ -21,6 +21,9 @@ class ThreadLimit {
     std::unique_ptr<Control> control_;
 };
 
+/// Threads that may work now.
+int thread_limit();
+
 /// Calls body(first, last) on disjoint pieces that together cover [begin, end), in any order and on several threads.
 /// `body` must write only what belongs to its own piece, so the result does not depend on the number of threads.
 void parallel_for(Index begin, Index end, const std::function<void(Index, Index)>& body, Index grain = 16384);

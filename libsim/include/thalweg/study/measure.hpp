@@ -196,7 +196,6 @@ struct RasterMeasurement {
     ConditioningReport conditioning;
     Index valid_cells = 0;
     double area_m2 = 0;
-    std::vector<double> carved_elevation_m;  ///< along which slopes are measured
     double segment_drop_m = 0;               ///< of the slope–area segments
     double vertical_quantum_m = 0;
     ChannelEvidence channel_evidence;
