@@ -93,7 +93,8 @@ inline NodeStep step_divided(double raised, const Receivers& receivers, std::spa
 }
 
 /// Asks for the receivers of the nodes that come next.
-inline void fetch_receivers(const terrain::MultipleFlow& flow, std::span<const Index> order, std::size_t at) {
+[[gnu::always_inline]] inline void fetch_receivers(const terrain::MultipleFlow& flow, std::span<const Index> order,
+                                                   std::size_t at) {
     if (at + 2 * ahead < order.size()) __builtin_prefetch(&flow.offset[order[at + 2 * ahead]]);
     if (at + ahead >= order.size()) return;
     const Index first = flow.offset[order[at + ahead]];

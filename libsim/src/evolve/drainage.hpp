@@ -5,6 +5,7 @@
 #include <span>
 
 #include "evolve/edges.hpp"
+#include "terrain/downhill.hpp"
 #include "terrain/lake_buffers.hpp"
 #include "terrain/layered_order.hpp"
 #include "thalweg/core/parallel.hpp"
@@ -29,7 +30,41 @@ void keep_frozen(const Edges& edges, const std::vector<double>& elevation_m, con
 struct DrainBuffers {
     terrain::LakeBuffers lakes;
     terrain::OrderBuffers order;
+    std::vector<Index> receiver;  ///< per node of a mesh, in the drainage last made
+    std::vector<double> length;   ///< to the receiver, m
 };
+
+inline void note_flow(const Grid&, const FlowDirections&, DrainBuffers&) {}
+
+/// Writes down where every node flows.
+inline void note_flow(const Mesh& mesh, const FlowDirections& directions, DrainBuffers& buffers) {
+    buffers.receiver.resize(mesh.size());
+    buffers.length.resize(mesh.size());
+    parallel_for(0, mesh.size(), [&](Index first, Index last) {
+        for (Index node = first; node < last; ++node) {
+            const Slot slot = directions[node];
+            buffers.receiver[node] = slot == no_flow ? none : mesh.neighbor(node, slot);
+            buffers.length[node] = slot == no_flow ? 0 : mesh.length(node, slot);
+        }
+    });
+}
+
+/// Calls body(edges) as `with_edges` does, but edges know only where the drainage last made leads.
+template <class Body>
+auto with_flow(const Grid& grid, const DrainBuffers&, Body body) {
+    return with_edges(grid, body);
+}
+
+template <class Body>
+auto with_flow(const Mesh& mesh, const DrainBuffers& buffers, Body body) {
+    return body(terrain::MeshFlow(mesh, buffers.receiver, buffers.length));
+}
+
+inline const Grid& flow_of(const Grid& grid, const DrainBuffers&) { return grid; }
+
+inline terrain::MeshFlow flow_of(const Mesh& mesh, const DrainBuffers& buffers) {
+    return {mesh, buffers.receiver, buffers.length};
+}
 
 /// Rain on every node's own cell.
 template <class Edges>
@@ -53,6 +88,7 @@ void drain_into(const T& topology, const Landscape& landscape, const Setting& se
         with_edges(topology, [&](const auto& edges) { keep_frozen(edges, elevation_m, frozen, drainage.directions); });
     }
     drainage.lakes = terrain::drain_lakes(topology, elevation_m, setting.boundary, drainage.directions, buffers.lakes);
+    note_flow(topology, drainage.directions, buffers);
     with_edges(topology, [&](const auto& edges) { collect_rain(edges, setting.rainfall, drainage.area_m2); });
     if (river.flow == Flow::multiple) {
         const terrain::Division division{.exponent = river.flow_exponent};
@@ -62,7 +98,8 @@ void drain_into(const T& topology, const Landscape& landscape, const Setting& se
         return;
     }
     double* const area_m2 = drainage.area_m2.data();
-    terrain::order_by_layers(topology, elevation_m, drainage.directions, buffers.order, drainage.order, drainage.layers,
+    terrain::order_by_layers(flow_of(topology, buffers), elevation_m, drainage.directions, buffers.order,
+                             drainage.order, drainage.layers,
                              [=](Index donor, Index taker) { area_m2[taker] += area_m2[donor]; });
     if (drainage.order.size() == elevation_m.size()) return;
     for (Index node = 0; node < elevation_m.size(); ++node) {

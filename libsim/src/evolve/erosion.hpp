@@ -45,8 +45,9 @@ inline NodeStep step_node(double raised, double receiver_m, double length, doubl
             .iterations = solution.iterations};
 }
 
-/// Asks for what a sweep will need of a node.
-inline void fetch(Index node, const Drainage& drainage, const Setting& setting, std::span<const double> elevation_m) {
+/// Asks for what a sweep will need of a node. Inlined by force: what does nothing but ask the compiler would drop.
+[[gnu::always_inline]] inline void fetch(Index node, const Drainage& drainage, const Setting& setting,
+                                         std::span<const double> elevation_m) {
     __builtin_prefetch(&drainage.directions[node]);
     __builtin_prefetch(&drainage.area_m2[node]);
     __builtin_prefetch(&setting.uplift_m_per_yr[node]);
@@ -263,11 +264,12 @@ class ErosionSweep {
 
   private:
     /// Asks for what the nodes will need.
-    void fetch_batch(const Index* nodes) const {
+    [[gnu::always_inline]] void fetch_batch(const Index* nodes) const {
         for (int i = 0; i < most_lanes; ++i) {
             __builtin_prefetch(elevation_ + nodes[i], 1);
             __builtin_prefetch(area_m2_ + nodes[i]);
             __builtin_prefetch(uplift_ + nodes[i]);
+            if constexpr (requires { edges_.fetch(nodes[i]); }) edges_.fetch(nodes[i]);
         }
     }
 

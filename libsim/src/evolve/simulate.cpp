@@ -151,7 +151,7 @@ StepReport step(Run<T>& run, SimulationState& state) {
     move_base_level(setting, start_yr + run.options.step_yr, landscape);
     if (run.creep) run.before_m = landscape.elevation_m;
     drain_into(run.topology, landscape, setting, river, state.exchange.frozen, run.drainage, run.buffers);
-    const StepSums sums = with_edges(run.topology, [&](const auto& edges) {
+    const StepSums sums = with_flow(run.topology, run.buffers, [&](const auto& edges) {
         if (river.g > 0) {
             return erode_with_sediment(edges, run.drainage, river, run.solve, setting, run.options.step_yr, landscape,
                                        run.sediment);

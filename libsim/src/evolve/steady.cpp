@@ -126,7 +126,7 @@ SteadyResult solved(const T& topology, const River& river, const Setting& settin
         result.converged = result.sweeps > 0 && changes == 0;
         if (result.converged) break;
         if (only_the_same(exchange)) freeze(exchange);
-        with_edges(topology, [&](const auto& edges) {
+        with_flow(topology, buffers, [&](const auto& edges) {
             if (river.g == 0) return integrate(edges, drainage, slope, landscape);
             integrate_loaded(edges, drainage, river, setting, slope, load, landscape);
         });

@@ -75,7 +75,7 @@ void write_receivers(const Grid& grid, std::span<const SlotBits> bits, const std
 namespace {
 
 /// Asks for the receivers of a node that comes soon.
-void fetch_receivers(const MultipleFlow& flow, Index node) {
+[[gnu::always_inline]] inline void fetch_receivers(const MultipleFlow& flow, Index node) {
     const Index first = flow.offset[node];
     __builtin_prefetch(flow.receiver.data() + first);
     __builtin_prefetch(flow.share.data() + first);

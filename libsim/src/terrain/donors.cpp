@@ -25,6 +25,30 @@ void count_in_row(const Slot* above, const Slot* here, const Slot* below, Index 
     }
 }
 
+/// Each block counts for its own nodes; what flows over a border is counted afterwards.
+template <class Flow>
+void count_by_blocks(const Flow& flow, const FlowDirections& directions, std::vector<std::uint8_t>& donors) {
+    donors.assign(flow.size(), 0);
+    const Blocks blocks(flow.size());
+    std::vector<std::vector<Index>> beyond(blocks.count());
+    blocks.for_each([&](Index block) {
+        const Index first = blocks.first(block);
+        const Index size = blocks.last(block) - first;
+        for (Index node = first; node < first + size; ++node) {
+            if (directions[node] == no_flow) continue;
+            const Index receiver = flow.neighbor(node, directions[node]);
+            if (receiver - first < size) {
+                ++donors[receiver];
+            } else {
+                beyond[block].push_back(receiver);
+            }
+        }
+    });
+    for (const std::vector<Index>& receivers : beyond) {
+        for (const Index receiver : receivers) ++donors[receiver];
+    }
+}
+
 }  // namespace
 
 void count_donors(const Grid& grid, const FlowDirections& directions, std::vector<std::uint8_t>& donors) {
@@ -41,27 +65,12 @@ void count_donors(const Grid& grid, const FlowDirections& directions, std::vecto
     parallel_for(0, grid.rows, rows, std::max<Index>(1, 65536 / grid.cols));
 }
 
-/// Each block counts for its own nodes; what flows over a border is counted afterwards.
 void count_donors(const Mesh& mesh, const FlowDirections& directions, std::vector<std::uint8_t>& donors) {
-    donors.assign(mesh.size(), 0);
-    const Blocks blocks(mesh.size());
-    std::vector<std::vector<Index>> beyond(blocks.count());
-    blocks.for_each([&](Index block) {
-        const Index first = blocks.first(block);
-        const Index size = blocks.last(block) - first;
-        for (Index node = first; node < first + size; ++node) {
-            if (directions[node] == no_flow) continue;
-            const Index receiver = mesh.neighbor(node, directions[node]);
-            if (receiver - first < size) {
-                ++donors[receiver];
-            } else {
-                beyond[block].push_back(receiver);
-            }
-        }
-    });
-    for (const std::vector<Index>& receivers : beyond) {
-        for (const Index receiver : receivers) ++donors[receiver];
-    }
+    count_by_blocks(mesh, directions, donors);
+}
+
+void count_donors(const MeshFlow& flow, const FlowDirections& directions, std::vector<std::uint8_t>& donors) {
+    count_by_blocks(flow, directions, donors);
 }
 
 }  // namespace thalweg::terrain

@@ -146,7 +146,7 @@ inline void append_part(const std::vector<Index>& begins, FlowLayers& layers) {
 ///
 /// From the leaves down, layer by layer: first within the blocks (on several threads), then what crosses their borders
 /// and all below it (the trunk, a few per cent of the nodes). Linear, without recursion.
-template <Topology T, class Pass>
+template <class T, class Pass>
 void order_by_layers(const T& topology, std::span<const double> elevation_m, const FlowDirections& directions,
                      OrderBuffers& buffers, std::vector<Index>& order, FlowLayers& layers, const Pass& pass) {
     const Blocks blocks(topology.size());
