@@ -11,8 +11,10 @@
 namespace thalweg::tools {
 namespace {
 
-const std::map<std::string, study::Conditioning> conditionings{
-    {"fill", study::Conditioning::fill}, {"carve", study::Conditioning::carve}, {"none", study::Conditioning::none}};
+const std::map<std::string, study::Conditioning> conditionings{{"fill", study::Conditioning::fill},
+                                                               {"carve", study::Conditioning::carve},
+                                                               {"none", study::Conditioning::none},
+                                                               {"breach", study::Conditioning::breach}};
 
 const std::map<std::string, study::Routing> routings{
     {"d8", study::Routing::d8}, {"dinf", study::Routing::dinf}, {"mfd", study::Routing::mfd}};
@@ -26,6 +28,7 @@ struct Options {
     DemOptions dem;
     OutletOptions outlet;
     std::string file, theta, knickpoint_prominence, heads, channels, slope_area;
+    std::string breach_depth, breach_length, endorheic_depth, endorheic_area, endorheic_points;
     std::string conditioning = "fill";
     std::string routing = "d8";
 };
@@ -49,10 +52,27 @@ void choose_channels(const Options& options, study::MeasureOptions& measure) {
     }
 }
 
+void choose_conditioning(const Options& options, study::MeasureOptions& measure) {
+    measure.conditioning = conditionings.at(options.conditioning);
+    const auto given = [](const char* name, const std::string& text) -> std::optional<double> {
+        if (text.empty()) return std::nullopt;
+        return parse_number(name, text, Sign::positive);
+    };
+    const auto depth = given("--breach-depth-m", options.breach_depth);
+    const auto length = given("--breach-length-m", options.breach_length);
+    if ((depth || length) && measure.conditioning != study::Conditioning::breach) {
+        throw Error("--breach-depth-m and --breach-length-m limit --condition breach, which is not asked for");
+    }
+    if (depth) measure.breach_limits.depth_m = *depth;
+    if (length) measure.breach_limits.length_m = *length;
+    measure.endorheic.depth_m = given("--endorheic-depth-m", options.endorheic_depth);
+    measure.endorheic.area_m2 = given("--endorheic-area-m2", options.endorheic_area);
+}
+
 void run(const Options& options) {
     study::MeasureOptions measure = measure_options(options.dem);
     choose_channels(options, measure);
-    measure.conditioning = conditionings.at(options.conditioning);
+    choose_conditioning(options, measure);
     measure.routing = routings.at(options.routing);
     if (!options.theta.empty()) measure.theta = parse_number("--theta", options.theta, Sign::positive);
     if (!options.knickpoint_prominence.empty()) {
@@ -63,6 +83,9 @@ void run(const Options& options) {
     const auto outlet = outlet_request(options.outlet);
     run_into_folder(options.common, "analyze", [&](const auto& folder, const study::Messages& m) {
         study::NamedRaster dem = study::read_dem(options.file, read, m);
+        if (!options.endorheic_points.empty()) {
+            measure.endorheic.cells = study::read_channel_heads(options.endorheic_points, dem.raster, m).cells;
+        }
         if (outlet) dem = study::cut_to_outlet(dem, *outlet, measure, m);
         if (!options.heads.empty()) measure.heads = study::read_channel_heads(options.heads, dem.raster, m);
         return study::analyze(dem, measure, folder, m);
@@ -76,10 +99,22 @@ void add_analyze(CLI::App& app) {
     auto options = std::make_shared<Options>();
     command->add_option("DEM", options->file, "elevations in any format GDAL reads")->required();
     command
-        ->add_option("--condition", options->conditioning,
-                     "what becomes of pits: fill, carve or none (slopes are measured on carved profiles always)")
-        ->check(CLI::IsMember({"fill", "carve", "none"}))
+        ->add_option(
+            "--condition", options->conditioning,
+            "what becomes of pits: fill, carve (cut through at their pass), breach (led out where the least is cut "
+            "away) or none (slopes are measured on carved profiles always)")
+        ->check(CLI::IsMember({"fill", "carve", "breach", "none"}))
         ->capture_default_str();
+    command->add_option("--breach-depth-m", options->breach_depth,
+                        "with breach: pits that would need a deeper cut are filled [default: no limit]");
+    command->add_option("--breach-length-m", options->breach_length,
+                        "with breach: pits that would need a longer cut are filled [default: no limit]");
+    command->add_option("--endorheic-depth-m", options->endorheic_depth,
+                        "closed depressions at least as deep keep their water [default: none]");
+    command->add_option("--endorheic-area-m2", options->endorheic_area,
+                        "closed depressions whose water would cover as much keep it [default: none]");
+    command->add_option("--endorheic-points", options->endorheic_points,
+                        "closed depressions that hold one of these points keep their water");
     command
         ->add_option("--routing", options->routing,
                      "how water is followed for the drainage area: d8, dinf or mfd (the network follows d8 always)")

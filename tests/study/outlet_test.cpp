@@ -28,7 +28,7 @@ Point middle(const Raster& raster, Index row, Index col) { return raster.placeme
 
 std::string error_of(const Raster& raster, const OutletRequest& request) {
     try {
-        catchment_above(raster, request, Conditioning::fill);
+        catchment_above(raster, request, MeasureOptions{});
     } catch (const Error& error) {
         return error.what();
     }
@@ -40,7 +40,7 @@ std::string error_of(const Raster& raster, const OutletRequest& request) {
 TEST_CASE("The outlet is moved to the river within reach, and not down along it", "[outlet]") {
     const Raster raster = drawn_catchment();
     const auto above = [&](Index row, Index col, double snap_m) {
-        return catchment_above(raster, {middle(raster, row, col), snap_m}, Conditioning::fill).report;
+        return catchment_above(raster, {middle(raster, row, col), snap_m}, MeasureOptions{}).report;
     };
     const OutletReport beside = above(5, 3, 10);
     CHECK(beside.snapped == middle(raster, 5, 4));
@@ -72,7 +72,7 @@ TEST_CASE("What drains to an outlet is what a walk down from every cell says, an
         const Index start = 10 * 40 + 20;
         if (std::isnan(raster.values[start])) continue;
         const Point at = raster.placement.center(10, 20);
-        const OutletCatchment cut = catchment_above(raster, {at, 6.0}, options.conditioning);
+        const OutletCatchment cut = catchment_above(raster, {at, 6.0}, options);
         const Index outlet = cell_at(raster, cut.report.snapped);
         double area = 0;
         for (Index node = 0; node < raster.grid.size(); ++node) {
@@ -153,7 +153,7 @@ TEST_CASE("On the ground the same number of degrees east is shorter in the north
         Raster raster = raster_of(terrain);
         raster.placement = {10, north, 0.01, 0.01, "", true};
         raster.grid = io::geographic_grid(9, 9, north, 0.01, 0.01);
-        return catchment_above(raster, {raster.placement.center(6, 4), 5000.0}, Conditioning::fill).report.moved_m;
+        return catchment_above(raster, {raster.placement.center(6, 4), 5000.0}, MeasureOptions{}).report.moved_m;
     };
     CHECK(moved(0.05) == Approx(2 * 1113.2).epsilon(1e-3));  // 0.02° on the equator
     CHECK(moved(60.05) == Approx(2 * 558.0).epsilon(1e-3));  // cos 60° and the ellipsoid

@@ -155,6 +155,31 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(thalweg("analyze", DEM, "--out", measured, "--no-figures").returncode, 0)
         self.refused("fit", measured, "--outlet", "-84.2", "36.3", *out, saying="--outlet")
 
+    def test_depressions_are_filled_cut_or_kept_as_asked(self):
+        def conditioned(*options):
+            done = thalweg("analyze", DEM, *options, "--out", self.here / "out", "--force", "--json", "--no-figures")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return json.loads(done.stdout)["conditioning"]
+
+        filled, breached = conditioned(), conditioned("--condition", "breach")
+        self.assertEqual((filled["cut_m3"], breached["filled_m3"]), (0, 0))
+        self.assertEqual(breached["method"], "breach")
+        self.assertGreater(breached["cut_m3"], 0)
+        both = conditioned("--condition", "breach", "--breach-depth-m", "5", "--breach-length-m", "500")
+        self.assertGreater(both["filled_m3"], 0)
+        self.assertGreater(both["cut_m3"], 0)
+        kept = conditioned("--endorheic-depth-m", "5")
+        self.assertGreater(kept["endorheic_basins"], 0)
+        self.assertLess(kept["filled_m3"], filled["filled_m3"])
+        self.assertLess(conditioned("--endorheic-depth-m", "5", "--endorheic-area-m2", "1e5")["endorheic_basins"],
+                        kept["endorheic_basins"])
+        out = ["--out", self.here / "refused"]
+        self.refused("analyze", DEM, "--breach-depth-m", "5", *out, saying="--condition breach")
+        self.refused("analyze", DEM, "--endorheic-depth-m", "-5", *out, saying="--endorheic-depth-m")
+        ridge = self.here / "ridge.geojson"
+        ridge.write_text(json.dumps({"type": "Point", "coordinates": [-84.41, 36.44]}))
+        self.refused("analyze", DEM, "--endorheic-points", ridge, *out, saying="no closed depression")
+
     def test_results_that_exist_are_kept_unless_force_is_given(self):
         out = self.here / "out"
         self.assertEqual(thalweg("simulate", self.experiment, "--out", out, "--no-figures").returncode, 0)

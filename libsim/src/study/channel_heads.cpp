@@ -45,8 +45,9 @@ ChannelHeads channel_heads_on(const Raster& raster, std::span<const Point> point
 }
 
 ChannelHeads read_channel_heads(const std::filesystem::path& path, const Raster& raster, const Messages& messages) {
-    const std::vector<Point> points = io::read_vectors(path, {.layers = {"sources"}, .crs_wkt = raster.placement.crs_wkt}).points;
-    if (points.empty()) throw Error(fmt::format("{} holds no points: channel heads are points", path.string()));
+    const std::vector<Point> points =
+        io::read_vectors(path, {.layers = {"sources"}, .crs_wkt = raster.placement.crs_wkt}).points;
+    if (points.empty()) throw Error(fmt::format("{} holds no points", path.string()));
     const ChannelHeads heads = channel_heads_on(raster, points);
     if (heads.cells.empty()) {
         throw Error(

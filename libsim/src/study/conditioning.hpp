@@ -13,9 +13,11 @@ struct Conditioned {
     FlowDirections directions;
     Index flat_cells = 0;  ///< that needed a direction by the flat rule
 };
-Conditioned conditioned(const Raster&, const std::vector<Boundary>&, Conditioning);
+Conditioned conditioned(const Raster&, const std::vector<Boundary>&, const MeasureOptions&);
 
-/// Where water may leave: the edge of the data, or the one outlet of a catchment.
-std::vector<Boundary> boundary_of(const Raster&, const MeasureOptions&);
+/// Where water may leave: the edge of the data, or the one outlet of a catchment; and the lowest cells of the
+/// depressions that keep theirs, which are added to `kept`. Throws Error where a cell of the options lies in no
+/// depression.
+std::vector<Boundary> boundary_of(const Raster&, const MeasureOptions&, Index& kept);
 
 }  // namespace thalweg::study

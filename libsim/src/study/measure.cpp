@@ -140,10 +140,11 @@ double reference_relief(const RasterMeasurement& m, std::span<const double> grou
 
 void report_changes(const Raster& raster, const std::vector<double>& surface, ConditioningReport& report) {
     for (Index node = 0; node < raster.grid.size(); ++node) {
-        const double change = std::abs(surface[node] - raster.values[node]);
-        if (!(change > 0)) continue;
+        const double change = surface[node] - raster.values[node];
+        if (std::isnan(change) || change == 0) continue;
         ++report.cells_changed;
-        report.volume_m3 += change * raster.grid.area(node);
+        report.volume_m3 += std::abs(change) * raster.grid.area(node);
+        (change > 0 ? report.filled_m3 : report.cut_m3) += std::abs(change) * raster.grid.area(node);
     }
 }
 
@@ -268,12 +269,12 @@ ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions& opt
 }
 
 RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& options) {
-    const auto boundary = boundary_of(raster, options);
     RasterMeasurement m;
+    const auto boundary = boundary_of(raster, options, m.conditioning.endorheic_basins);
     m.terrain.cell_area_m2 = terrain::cell_areas(raster.grid);
     const CarvedRivers rivers = carved_rivers(raster, boundary, options, m.terrain.cell_area_m2, m.conditioning);
 
-    Conditioned c = conditioned(raster, boundary, options.conditioning);
+    Conditioned c = conditioned(raster, boundary, options);
     m.directions = std::move(c.directions);
     m.conditioning.flat_cells = c.flat_cells;
     std::vector<double> surface = std::move(c.surface_m);

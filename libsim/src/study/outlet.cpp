@@ -84,9 +84,10 @@ struct Routed {
     std::vector<std::uint8_t> complete;
 };
 
-Routed routed(const Raster& raster, Conditioning conditioning) {
-    const auto boundary = terrain::data_edge(raster.grid, raster.values);
-    const Conditioned c = conditioned(raster, boundary, conditioning);
+Routed routed(const Raster& raster, const MeasureOptions& options) {
+    Index kept = 0;
+    const auto boundary = boundary_of(raster, options, kept);
+    const Conditioned c = conditioned(raster, boundary, options);
     Routed r;
     r.graph = terrain::flow_graph(raster.grid, c.surface_m, c.directions);
     r.area_m2 = terrain::accumulate(r.graph, terrain::cell_areas(raster.grid));
@@ -109,11 +110,11 @@ Index snapped_outlet(const Raster& raster, Point point, double radius_m, std::sp
     return std::get<2>(best);
 }
 
-OutletCatchment catchment_above(const Raster& raster, const OutletRequest& request, Conditioning conditioning) {
+OutletCatchment catchment_above(const Raster& raster, const OutletRequest& request, const MeasureOptions& options) {
     const Index cell = cell_of(raster, request.at);
     const Grid& grid = raster.grid;
     const double snap_m = request.snap_m.value_or(5 * std::max(grid.east_west[grid.row(cell)], mean(grid.north_south)));
-    const Routed r = routed(raster, conditioning);
+    const Routed r = routed(raster, options);
     const Index outlet = snapped_outlet(raster, request.at, snap_m, r.area_m2);
     const bool complete = r.complete[outlet] != 0;
     const auto label =
@@ -137,8 +138,9 @@ OutletCatchment catchment_above(const Raster& raster, const OutletRequest& reque
 NamedRaster cut_to_outlet(const NamedRaster& dem, const OutletRequest& request, MeasureOptions& options,
                           const Messages& messages) {
     messages.progress("looking for the outlet");
-    OutletCatchment cut = catchment_above(dem.raster, request, options.conditioning);
+    OutletCatchment cut = catchment_above(dem.raster, request, options);
     options.catchment_outlet = cut.outlet;
+    options.endorheic = {};  // what keeps its water does not drain to the outlet and is gone
     if (!options.channel_area_m2 && options.channels == ChannelRule::area) {
         options.channel_area_m2 = catchment_channel_area(cut.raster);
     }

@@ -189,11 +189,14 @@ Json interval(const Estimate& estimate) {
 }
 
 Json conditioning_json(const ConditioningReport& c, Conditioning method) {
-    constexpr std::array names{"fill", "carve", "none"};
+    constexpr std::array names{"fill", "carve", "none", "breach"};
     return {{"method", names[static_cast<std::size_t>(method)]},
             {"pits", c.pits},
             {"cells_changed", c.cells_changed},
             {"volume_m3", c.volume_m3},
+            {"filled_m3", c.filled_m3},
+            {"cut_m3", c.cut_m3},
+            {"endorheic_basins", c.endorheic_basins},
             {"flat_cells", c.flat_cells}};
 }
 

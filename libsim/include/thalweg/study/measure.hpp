@@ -21,6 +21,7 @@
 #include "thalweg/channel/tokunaga.hpp"
 #include "thalweg/core/raster.hpp"
 #include "thalweg/terrain/basins.hpp"
+#include "thalweg/terrain/breach.hpp"
 #include "thalweg/terrain/hypsometry.hpp"
 
 namespace thalweg::study {
@@ -29,7 +30,8 @@ namespace thalweg::study {
 enum class Conditioning {
     fill,   ///< filled to their pass, flats drained
     carve,  ///< cut through at their pass
-    none    ///< they keep their water
+    none,   ///< they keep their water
+    breach  ///< led out where the least is cut away, within limits; the rest filled
 };
 
 /// How water is followed for the drainage area. The network's cells are joined by D8 always.
@@ -55,8 +57,18 @@ struct ChannelHeads {
     Index merged = 0;          ///< in a cell that another has
 };
 
+/// Closed depressions that keep their water, each draining to its lowest cell: those that are as deep and as large as
+/// is asked for, and those that hold one of the cells. Nothing asked for: none.
+struct Endorheic {
+    std::optional<double> depth_m{}, area_m2{};  ///< at the deepest; under water
+    std::vector<Index> cells{};
+    bool wanted() const { return depth_m || area_m2 || !cells.empty(); }
+};
+
 struct MeasureOptions {
     Conditioning conditioning = Conditioning::fill;
+    terrain::BreachLimits breach_limits{};
+    Endorheic endorheic{};
     Routing routing = Routing::d8;
     std::optional<double> channel_area_m2;  ///< default: 0.1 % of the area, rounded to 1-2-5
     ChannelRule channels = ChannelRule::area;
@@ -85,10 +97,10 @@ struct BasinStatistics {
     terrain::Basin basin;
     double relief_m = 0;
     terrain::Hypsometry hypsometry = {};
-    double length_m = 0;                ///< straight, from the outlet to the farthest node
-    double perimeter_m = 0;             ///< NaN where the topology does not tell it (a mesh)
+    double length_m = 0;     ///< straight, from the outlet to the farthest node
+    double perimeter_m = 0;  ///< NaN where the topology does not tell it (a mesh)
     channel::BasinShape shape = {};
-    double asymmetry_percent = 0;       ///< share of the area on the trunk's right; NaN: no trunk, or angles not known
+    double asymmetry_percent = 0;  ///< share of the area on the trunk's right; NaN: no trunk, or angles not known
     double channel_length_m = 0;
     double drainage_density_per_m = 0;
     Index sources = 0;
@@ -185,8 +197,10 @@ struct ChannelEvidence {
 struct ConditioningReport {
     Index pits = 0;  ///< lakes: pits (or flats) that drained nowhere
     Index cells_changed = 0;
-    double volume_m3 = 0;  ///< filled, or cut away
-    Index flat_cells = 0;  ///< that needed a direction by the flat rule
+    double volume_m3 = 0;  ///< filled and cut away
+    double filled_m3 = 0, cut_m3 = 0;
+    Index endorheic_basins = 0;  ///< depressions that keep their water
+    Index flat_cells = 0;        ///< that needed a direction by the flat rule
 };
 
 /// A measured DEM with the rasters that the measuring made.

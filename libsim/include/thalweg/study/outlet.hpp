@@ -36,8 +36,8 @@ struct OutletCatchment {
     OutletReport report;
 };
 
-/// Snaps the outlet and cuts its catchment out, as the given conditioning lets water run. Throws Error for a point
-/// beside the raster or on no data, and for an outlet to which no other cell drains.
-OutletCatchment catchment_above(const Raster&, const OutletRequest&, Conditioning);
+/// Snaps the outlet and cuts its catchment out, as the conditioning of the options lets water run. Throws Error for a
+/// point beside the raster or on no data, and for an outlet to which no other cell drains.
+OutletCatchment catchment_above(const Raster&, const OutletRequest&, const MeasureOptions&);
 
 }  // namespace thalweg::study
