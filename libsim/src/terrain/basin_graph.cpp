@@ -2,9 +2,12 @@
 #include "terrain/basin_graph.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <limits>
 #include <numeric>
 #include <tuple>
+
+#include "thalweg/core/parallel.hpp"
 
 namespace thalweg::terrain {
 namespace {
@@ -94,6 +97,31 @@ Index count_lakes(const std::vector<Pass>& tree, std::span<const Index> pit, std
     return static_cast<Index>(std::count(is_lake.begin(), is_lake.end(), 1));
 }
 
+/// Puts a pass in the place of a higher one, whatever other threads do: which pass is lowest does not hang on the
+/// order.
+void offer(const Pass& pass, const Pass*& best) {
+    const std::atomic_ref place(best);
+    const Pass* seen = place.load(std::memory_order_acquire);
+    while (seen == nullptr || lower(pass, *seen)) {
+        if (place.compare_exchange_weak(seen, &pass, std::memory_order_acq_rel)) return;
+    }
+}
+
+/// Keeps the passes that lead from one piece to another, and offers each to both.
+void forget_inner_passes(const std::vector<Index>& piece, std::vector<const Pass*>& lowest, std::vector<Pass>& passes) {
+    std::size_t kept = 0;
+    for (const Pass& pass : passes) {
+        const Index a = piece[pass.basin];
+        const Index b = piece[pass.other_basin];
+        if (a == b) continue;
+        passes[kept] = pass;
+        offer(passes[kept], lowest[a]);
+        offer(passes[kept], lowest[b]);
+        ++kept;
+    }
+    passes.erase(passes.begin() + static_cast<std::ptrdiff_t>(kept), passes.end());
+}
+
 }  // namespace
 
 Joined::Joined(Index basins) : parent_(basins), size_(basins, 1) { std::iota(parent_.begin(), parent_.end(), 0u); }
@@ -116,34 +144,22 @@ bool Joined::join(Index a, Index b) {
     return true;
 }
 
-std::vector<Pass> spanning_passes(std::vector<Pass> passes, Joined& joined) {
+std::vector<Pass> spanning_passes(std::span<std::vector<Pass>* const> lists, Joined& joined) {
     std::vector<Pass> tree;
     tree.reserve(joined.size());
-    std::vector<Index> lowest(joined.size(), none);  // per piece: place of its lowest pass
-    std::vector<Index> pieces;                       // that have one
-    while (!passes.empty()) {
-        std::size_t kept = 0;
-        const auto offer = [&](Index piece) {
-            Index& best = lowest[piece];
-            if (best == none) pieces.push_back(piece);
-            if (best == none || lower(passes[kept], passes[best])) best = static_cast<Index>(kept);
-        };
-        for (const Pass& pass : passes) {
-            const Index a = joined.find(pass.basin);
-            const Index b = joined.find(pass.other_basin);
-            if (a == b) continue;
-            passes[kept] = pass;
-            offer(a);
-            offer(b);
-            ++kept;
+    std::vector<Index> piece(joined.size());                  // per basin
+    std::vector<const Pass*> lowest(joined.size(), nullptr);  // per piece
+    const auto some = [&](Index first, Index last) {
+        for (Index list = first; list < last; ++list) forget_inner_passes(piece, lowest, *lists[list]);
+    };
+    for (std::size_t before = none; before != tree.size();) {
+        before = tree.size();
+        for (Index basin = 0; basin < joined.size(); ++basin) piece[basin] = joined.find(basin);
+        parallel_for(0, static_cast<Index>(lists.size()), some, 1);
+        for (const Pass*& pass : lowest) {
+            if (pass != nullptr && joined.join(pass->basin, pass->other_basin)) tree.push_back(*pass);
+            pass = nullptr;
         }
-        passes.resize(kept);
-        for (const Index piece : pieces) {
-            const Pass& pass = passes[lowest[piece]];
-            if (joined.join(pass.basin, pass.other_basin)) tree.push_back(pass);
-        }
-        for (const Index piece : pieces) lowest[piece] = none;
-        pieces.clear();
     }
     return tree;
 }

@@ -64,8 +64,9 @@ class Joined {
 };
 
 /// The passes of the minimum spanning forest, and `joined` over them. By Borůvka's rounds: every piece is joined over
-/// its lowest pass, which at least halves their number, and passes within a piece are forgotten.
-std::vector<Pass> spanning_passes(std::vector<Pass> passes, Joined& joined);
+/// its lowest pass, which at least halves their number, and passes within a piece are forgotten, so that in the end
+/// none is left. Lists of passes are gone through by several threads; which list a pass stands in does not matter.
+std::vector<Pass> spanning_passes(std::span<std::vector<Pass>* const> lists, Joined& joined);
 
 /// How each basin drains: over `node` (its own) into `other_node` of `other_basin`, at `height_m`.
 struct SpillTree {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "terrain/lake_basins.hpp"
 
-#include <cmath>
+#include <array>
 
 #include "terrain/blocks.hpp"
 
@@ -148,21 +148,31 @@ class InnerCells {
     std::uint64_t per_row_;
 };
 
-/// Whether a node has a neighbour in a basin of lower number.
+/// Finds a node's neighbours in basins of lower number. No branch hangs on a comparison: most could not be predicted.
 class GridBorders {
   public:
     GridBorders(const Grid& grid, std::span<const Index> basin) : grid_(grid), basin_(basin.data()), inner_(grid) {}
 
     static void fetch(const Index*) {}
 
-    bool touch(Index node) const {
-        if (!inner_.contains(node)) return true;
+    /// Writes them from `to` on and returns how many they are.
+    Index lower_basins(Index node, Index* to) const {
         const Index here = basin_[node];
-        const Index* const a = basin_ + node - grid_.cols;
-        const Index* const b = basin_ + node + grid_.cols;
-        const Index* const c = basin_ + node;
-        return ((a[-1] < here) | (a[0] < here) | (a[1] < here) | (c[-1] < here) | (c[1] < here) | (b[-1] < here) |
-                (b[0] < here) | (b[1] < here));
+        Index count = 0;
+        const auto offer = [&](Index neighbor) {
+            to[count] = neighbor;
+            count += basin_[neighbor] < here;
+        };
+        if (!inner_.contains(node)) {
+            grid_.neighbors(node, [&](Index neighbor, double, Slot) { offer(neighbor); });
+            return count;
+        }
+        const Index above = node - grid_.cols;
+        const Index below = node + grid_.cols;
+        for (const Index neighbor : {above - 1, above, above + 1, node - 1, node + 1, below - 1, below, below + 1}) {
+            offer(neighbor);
+        }
+        return count;
     }
 
   private:
@@ -177,12 +187,14 @@ class MeshBorders {
 
     [[gnu::always_inline]] void fetch(const Index* nodes) const { fetch_neighbors(mesh_, nodes[24], nodes[48]); }
 
-    bool touch(Index node) const {
-        Index lowest = none;
+    Index lower_basins(Index node, Index* to) const {
+        const Index here = basin_[node];
+        Index count = 0;
         for (Index at = mesh_.offset[node]; at < mesh_.offset[node + 1]; ++at) {
-            lowest = std::min(lowest, basin_[mesh_.neighbor_list[at]]);
+            to[count] = mesh_.neighbor_list[at];
+            count += basin_[mesh_.neighbor_list[at]] < here;
         }
-        return lowest < basin_[node];
+        return count;
     }
 
   private:
@@ -197,31 +209,34 @@ MeshBorders borders_of(const Mesh& mesh, std::span<const Index> basin) { return 
 template <Topology T>
 class PassSearch {
   public:
-    PassSearch(const Terrain<T>& terrain, const LakeBasins& basins)
+    PassSearch(const Terrain<T>& terrain, const LakeBasins& basins, PassBuffers& buffers)
         : terrain_(terrain),
           basins_(basins),
           borders_(borders_of(terrain.topology, basins.basin)),
-          place_(basins.count(), none) {}
+          place_(buffers.place),
+          passes_(buffers.passes) {
+        place_.assign(basins.count(), none);
+        passes_.clear();
+    }
 
     void search(Index basin) {
         begin_ = static_cast<Index>(passes_.size());
+        std::array<Index, no_flow> lower;
         for (const Index& node : basins_.nodes[basin]) {
             borders_.fetch(&node);
-            if (borders_.touch(node)) offer_passes(basin, node);
+            const Index count = borders_.lower_basins(node, lower.data());
+            for (Index i = 0; i < count; ++i) offer(basin, node, lower[i]);
             if (terrain_.boundary[node] == Boundary::open) {
                 keep_lower(outside, pass_straight_out(terrain_.elevation_m, basin, node));
             }
         }
     }
-    std::vector<Pass> take() { return std::move(passes_); }
 
   private:
-    void offer_passes(Index basin, Index node) {
-        terrain_.topology.neighbors(node, [&](Index neighbor, double, Slot) {
-            const Index other = basins_.basin[neighbor];
-            if (other >= basin || !terrain_.has_data(neighbor)) return;
-            keep_lower(other, pass_between(terrain_.elevation_m, basin, node, other, neighbor));
-        });
+    void offer(Index basin, Index node, Index neighbor) {
+        if (!terrain_.has_data(neighbor)) return;
+        const Index other = basins_.basin[neighbor];
+        keep_lower(other, pass_between(terrain_.elevation_m, basin, node, other, neighbor));
     }
 
     /// Places of the passes of earlier basins lie before `begin_`.
@@ -238,26 +253,21 @@ class PassSearch {
     const Terrain<T>& terrain_;
     const LakeBasins& basins_;
     decltype(borders_of(terrain_.topology, std::span<const Index>())) borders_;
-    std::vector<Index> place_;  // per basin: where the pass to it stands
-    std::vector<Pass> passes_;
+    std::vector<Index>& place_;  // per basin: where the pass to it stands
+    std::vector<Pass>& passes_;
     Index begin_ = 0;
 };
 
 template <Topology T>
-std::vector<Pass> all_passes(const Terrain<T>& terrain, const LakeBasins& basins) {
+void all_passes(const Terrain<T>& terrain, const LakeBasins& basins, LakeBuffers& buffers) {
     const Blocks blocks(basins.count(), 1024);
-    std::vector<std::vector<Pass>> found(blocks.count());
+    buffers.search.resize(blocks.count());
     blocks.for_each([&](Index block) {
-        PassSearch<T> borders(terrain, basins);
+        PassSearch<T> passes(terrain, basins, buffers.search[block]);
         for (Index basin = std::max<Index>(1, blocks.first(block)); basin < blocks.last(block); ++basin) {
-            borders.search(basin);
+            passes.search(basin);
         }
-        found[block] = borders.take();
     });
-    for (Index block = 1; block < blocks.count(); ++block) {
-        found[0].insert(found[0].end(), found[block].begin(), found[block].end());
-    }
-    return std::move(found[0]);
 }
 
 }  // namespace
@@ -278,12 +288,12 @@ LakeBasins lake_basins(const Mesh& mesh, const FlowDirections& directions, std::
     return basins_of(MeshDonors(mesh, buffers.receiver), mesh.size(), std::move(pit), buffers);
 }
 
-std::vector<Pass> passes_between(const Terrain<Grid>& terrain, const LakeBasins& basins) {
-    return all_passes(terrain, basins);
+void passes_between(const Terrain<Grid>& terrain, const LakeBasins& basins, LakeBuffers& buffers) {
+    all_passes(terrain, basins, buffers);
 }
 
-std::vector<Pass> passes_between(const Terrain<Mesh>& terrain, const LakeBasins& basins) {
-    return all_passes(terrain, basins);
+void passes_between(const Terrain<Mesh>& terrain, const LakeBasins& basins, LakeBuffers& buffers) {
+    all_passes(terrain, basins, buffers);
 }
 
 }  // namespace thalweg::terrain

@@ -25,8 +25,8 @@ struct LakeBasins {
 LakeBasins lake_basins(const Grid&, const FlowDirections&, std::vector<Index> pit, LakeBuffers&);
 LakeBasins lake_basins(const Mesh&, const FlowDirections&, std::vector<Index> pit, LakeBuffers&);
 
-/// The lowest pass between each two basins, and from each basin to the outside.
-std::vector<Pass> passes_between(const Terrain<Grid>&, const LakeBasins&);
-std::vector<Pass> passes_between(const Terrain<Mesh>&, const LakeBasins&);
+/// The lowest pass between each two basins, and from each basin to the outside: written to `LakeBuffers::search`.
+void passes_between(const Terrain<Grid>&, const LakeBasins&, LakeBuffers&);
+void passes_between(const Terrain<Mesh>&, const LakeBasins&, LakeBuffers&);
 
 }  // namespace thalweg::terrain

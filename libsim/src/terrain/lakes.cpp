@@ -56,9 +56,12 @@ struct Lakes {
 };
 
 template <Topology T>
-SpillTree join_basins(const Terrain<T>& terrain, const LakeBasins& basins) {
+SpillTree join_basins(const Terrain<T>& terrain, const LakeBasins& basins, LakeBuffers& buffers) {
+    passes_between(terrain, basins, buffers);
+    std::vector<std::vector<Pass>*> lists;
+    for (PassBuffers& search : buffers.search) lists.push_back(&search.passes);
     Joined joined(basins.count());
-    std::vector<Pass> tree = spanning_passes(passes_between(terrain, basins), joined);
+    std::vector<Pass> tree = spanning_passes(lists, joined);
     return spill_tree(std::move(tree), joined, basins.pit, terrain.elevation_m);
 }
 
@@ -68,7 +71,7 @@ Lakes find_lakes(const Terrain<T>& terrain, FlowDirections& directions, LakeBuff
     Lakes lakes{.basins = {}, .spill = {.way_out = {}, .order = {}, .lakes = 0}};
     if (pits.size() == 1) return lakes;
     lakes.basins = lake_basins(terrain.topology, directions, std::move(pits), buffers);
-    lakes.spill = join_basins(terrain, lakes.basins);
+    lakes.spill = join_basins(terrain, lakes.basins, buffers);
     return lakes;
 }
 
