@@ -30,20 +30,19 @@ void keep_frozen(const Edges& edges, const std::vector<double>& elevation_m, con
 struct DrainBuffers {
     terrain::LakeBuffers lakes;
     terrain::OrderBuffers order;
-    std::vector<Index> receiver;  ///< per node of a mesh, in the drainage last made
-    std::vector<double> length;   ///< to the receiver, m
+    std::vector<double> length;  ///< per node of a mesh: to the receiver in `lakes`, m
 };
 
 inline void note_flow(const Grid&, const FlowDirections&, DrainBuffers&) {}
 
 /// Writes down where every node flows.
 inline void note_flow(const Mesh& mesh, const FlowDirections& directions, DrainBuffers& buffers) {
-    buffers.receiver.resize(mesh.size());
+    buffers.lakes.receiver.resize(mesh.size());
     buffers.length.resize(mesh.size());
     parallel_for(0, mesh.size(), [&](Index first, Index last) {
         for (Index node = first; node < last; ++node) {
             const Slot slot = directions[node];
-            buffers.receiver[node] = slot == no_flow ? none : mesh.neighbor(node, slot);
+            buffers.lakes.receiver[node] = slot == no_flow ? none : mesh.neighbor(node, slot);
             buffers.length[node] = slot == no_flow ? 0 : mesh.length(node, slot);
         }
     });
@@ -57,13 +56,13 @@ auto with_flow(const Grid& grid, const DrainBuffers&, Body body) {
 
 template <class Body>
 auto with_flow(const Mesh& mesh, const DrainBuffers& buffers, Body body) {
-    return body(terrain::MeshFlow(mesh, buffers.receiver, buffers.length));
+    return body(terrain::MeshFlow(mesh, buffers.lakes.receiver, buffers.length));
 }
 
 inline const Grid& flow_of(const Grid& grid, const DrainBuffers&) { return grid; }
 
 inline terrain::MeshFlow flow_of(const Mesh& mesh, const DrainBuffers& buffers) {
-    return {mesh, buffers.receiver, buffers.length};
+    return {mesh, buffers.lakes.receiver, buffers.length};
 }
 
 /// Rain on every node's own cell.
