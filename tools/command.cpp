@@ -39,12 +39,43 @@ void add_dem_options(CLI::App& app, DemOptions& options) {
                  "count catchments that the edge of the data cuts, too");
     app.add_option("--crs", options.crs, "coordinate system to use instead of the file's, e.g. EPSG:32611");
     app.add_option("--nodata", options.nodata, "value to be taken as no data, besides what the file declares");
+    app.add_option("--band", options.band, "band of the file that holds the heights [default: 1]");
+    app.add_option("--crop", options.window, "use only this window of the file, in its coordinates")
+        ->expected(4)
+        ->type_name("W S E N");
+    app.add_option("--sea-level", options.sea_level, "cells at or below this height (m) are no data");
+    app.add_option("--reproject", options.reproject, "warp to this coordinate system first, e.g. EPSG:32611");
+    app.add_option("--cell-m", options.cell, "warp to square cells of this size first");
 }
+
+namespace {
+
+int parse_band(const std::string& text) {
+    const double band = parse_number("--band", text, Sign::positive);
+    if (band != std::floor(band) || band > 65535) throw Error("--band is a number from 1 on, not " + text);
+    return static_cast<int>(band);
+}
+
+io::Window parse_window(const std::vector<std::string>& text) {
+    const auto edge = [&](std::size_t i) { return parse_number("--crop", text[i], Sign::any); };
+    const io::Window window{edge(0), edge(1), edge(2), edge(3)};
+    if (window.west < window.east && window.south < window.north) return window;
+    throw Error(
+        "--crop takes west, south, east and north in this order, so that the third is larger than the first "
+        "and the fourth than the second");
+}
+
+}  // namespace
 
 io::ReadOptions read_options(const DemOptions& options) {
     io::ReadOptions read;
     read.crs = options.crs;
     if (!options.nodata.empty()) read.nodata = parse_number("--nodata", options.nodata, Sign::any);
+    if (!options.band.empty()) read.band = parse_band(options.band);
+    if (!options.window.empty()) read.window = parse_window(options.window);
+    if (!options.sea_level.empty()) read.sea_level_m = parse_number("--sea-level", options.sea_level, Sign::any);
+    read.reproject = options.reproject;
+    if (!options.cell.empty()) read.cell_m = parse_number("--cell-m", options.cell, Sign::positive);
     return read;
 }
 

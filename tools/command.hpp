@@ -28,7 +28,8 @@ void add_common_options(CLI::App&, CommonOptions&, const std::string& default_ou
 
 /// Options about reading and measuring a DEM, shared by analyze, fit and compare.
 struct DemOptions {
-    std::string nodata, crs;
+    std::string nodata, crs, band, sea_level, reproject, cell;
+    std::vector<std::string> window;  ///< west, south, east, north
     std::string channel_area_m2;
     bool keep_edge_basins = false;
 };

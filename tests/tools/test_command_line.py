@@ -155,6 +155,28 @@ class CommandLine(unittest.TestCase):
         self.assertEqual(thalweg("analyze", DEM, "--out", measured, "--no-figures").returncode, 0)
         self.refused("fit", measured, "--outlet", "-84.2", "36.3", *out, saying="--outlet")
 
+    def test_parts_of_a_dem_are_read_and_put_on_other_cells(self):
+        def measured(*options):
+            done = thalweg("analyze", DEM, *options, "--out", self.here / "out", "--force", "--json", "--no-figures")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return json.loads(done.stdout)["input"]
+
+        whole, part = measured(), measured("--crop", "-84.2", "36.25", "-84.0", "36.4")
+        self.assertLess(part["area_m2"], 0.5 * whole["area_m2"])
+        self.assertLess(measured("--sea-level", "400")["valid_cells"], whole["valid_cells"])
+        warped = measured("--reproject", "EPSG:32616", "--cell-m", "180")
+        self.assertEqual((warped["crs"], warped["geographic"], warped["dx_m"]), ("EPSG:32616", False, 180))
+        # Cells that the edge cuts count whole, about half a cell on every side.
+        self.assertAlmostEqual(warped["area_m2"] / whole["area_m2"], 1, delta=0.02)
+        out = ["--out", self.here / "refused"]
+        self.refused("analyze", DEM, "--crop", "-84", "36.4", "-84.2", "36.25", *out, saying="west, south, east and north")
+        self.refused("analyze", DEM, "--crop", "5", "36", "6", "37", *out, saying="reaches from -84")
+        self.refused("analyze", DEM, "--band", "2", *out, saying="no band 2")
+        self.refused("analyze", DEM, "--band", "1.5", *out, saying="--band")
+        self.refused("analyze", DEM, "--cell-m", "100", *out, saying="projected coordinate system")
+        self.refused("analyze", DEM, "--reproject", "nowhere", *out, saying="'nowhere'")
+        self.refused("analyze", DEM, "--sea-level", "9000", *out, saying="no data")
+
     def test_depressions_are_filled_cut_or_kept_as_asked(self):
         def conditioned(*options):
             done = thalweg("analyze", DEM, *options, "--out", self.here / "out", "--force", "--json", "--no-figures")

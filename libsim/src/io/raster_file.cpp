@@ -12,6 +12,7 @@
 #include "io/raster_open.hpp"
 #include "io/raster_place.hpp"
 #include "io/raster_survey.hpp"
+#include "io/raster_window.hpp"
 #include "thalweg/core/error.hpp"
 
 namespace thalweg::io {
@@ -41,7 +42,7 @@ void check_size(GDALDataset& dataset, const std::string& name) {
     }
 }
 
-void check_band(GDALDataset& dataset, const std::string& name, ReadResult& result) {
+void check_band(GDALDataset& dataset, const std::string& name, const ReadOptions& options, ReadResult& result) {
     GDALRasterBand& band = *dataset.GetRasterBand(1);
     if (GDALDataTypeIsComplex(band.GetRasterDataType())) {
         throw Error(fmt::format("the first band of {} holds complex numbers, not heights", name));
@@ -51,7 +52,8 @@ void check_band(GDALDataset& dataset, const std::string& name, ReadResult& resul
             fmt::format("the first band of {} is coloured like a picture: its values are taken as "
                         "heights",
                         name));
-    } else if (dataset.GetRasterCount() > 1 && dataset.GetRasterBand(2)->GetColorInterpretation() != GCI_AlphaBand) {
+    } else if (options.band == 1 && dataset.GetRasterCount() > 1 &&
+               dataset.GetRasterBand(2)->GetColorInterpretation() != GCI_AlphaBand) {
         result.warnings.push_back(
             fmt::format("{} has {} bands: the first one is taken as heights", name, dataset.GetRasterCount()));
     }
@@ -170,17 +172,37 @@ void check_any_data(const ReadResult& result, const std::string& name) {
     }
 }
 
+void blank_sea(const ReadOptions& options, std::vector<double>& values) {
+    if (!options.sea_level_m) return;
+    for (double& value : values) value = value <= *options.sea_level_m ? no_value : value;
+}
+
 ReadResult read_dataset(GDALDataset& dataset, const std::string& name, const ReadOptions& options,
                         const GdalGuard& gdal) {
     ReadResult result;
     check_size(dataset, name);
-    check_band(dataset, name, result);
+    check_band(dataset, name, options, result);
     const RowOrder order = place_raster(dataset, name, options.crs, result);
     read_values(dataset, options, name, gdal, result);
     if (order == RowOrder::south_to_north) turn_over(result.raster);
+    blank_sea(options, result.raster.values);
     check_any_data(result, name);
     const std::vector<std::string> noticed = survey_heights(result.raster, name);
     result.warnings.insert(result.warnings.end(), noticed.begin(), noticed.end());
+    return result;
+}
+
+/// On other cells; what was noticed of the file's own comes first.
+ReadResult read_warped(const ReadResult& read, const std::string& name, const ReadOptions& options,
+                       const GdalGuard& gdal) {
+    const DatasetPtr dataset = warped(read.raster, name, options);
+    ReadResult result = read_dataset(*dataset, name, {}, gdal);
+    result.vertical_unit_m = read.vertical_unit_m;
+    std::vector<std::string> warnings = read.warnings;
+    for (std::string& warning : result.warnings) {
+        if (std::ranges::find(warnings, warning) == warnings.end()) warnings.push_back(std::move(warning));
+    }
+    result.warnings = std::move(warnings);
     return result;
 }
 
@@ -191,7 +213,10 @@ ReadResult read_raster(const std::filesystem::path& path, const ReadOptions& opt
     const DatasetPtr dataset = open_raster(path, gdal);
     const std::string name = path.string();
     try {
-        return read_dataset(*dataset, name, options, gdal);
+        const DatasetPtr part = window_of(*dataset, name, options);
+        ReadResult result = read_dataset(part ? *part : *dataset, name, options, gdal);
+        if (options.reproject.empty() && !options.cell_m) return result;
+        return read_warped(result, name, options, gdal);
     } catch (const std::bad_alloc&) {
         throw Error(fmt::format("{} does not fit the memory of this machine: crop or coarsen it with gdalwarp", name));
     }

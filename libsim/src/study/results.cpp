@@ -35,12 +35,13 @@ Index grown_outlet(const std::filesystem::path& folder, const Raster& raster) {
 
 void refuse_dem_options(const std::filesystem::path& folder, const io::ReadOptions& read,
                         const MeasureOptions& measure) {
-    const bool asked =
-        read.nodata || !read.crs.empty() || measure.channel_area_m2 || measure.edge_basins == terrain::EdgeBasins::keep;
+    const bool cells = read.nodata || read.band != 1 || read.window || read.sea_level_m || read.cell_m;
+    const bool systems = !read.crs.empty() || !read.reproject.empty();
+    const bool asked = cells || systems || measure.channel_area_m2 || measure.edge_basins == terrain::EdgeBasins::keep;
     if (!asked) return;
     throw Error(
-        fmt::format("'{}' was measured before: --channel-area-m2, --keep-edge-basins, --crs and --nodata apply "
-                    "to DEMs; give the DEM, or analyze it anew",
+        fmt::format("'{}' was measured before: --channel-area-m2, --keep-edge-basins, --crs, --nodata and what "
+                    "else says how a DEM is read apply to DEMs; give the DEM, or analyze it anew",
                     folder.string()));
 }
 

@@ -12,9 +12,19 @@
 
 namespace thalweg::io {
 
+/// A rectangle in a raster's own coordinates.
+struct Window {
+    double west, south, east, north;
+};
+
 struct ReadOptions {
-    std::optional<double> nodata = {};  ///< value to be taken as no data besides what the file declares
-    std::string crs = {};               ///< e.g. "EPSG:32611": replaces what the file says; empty: the file's own
+    std::optional<double> nodata = {};       ///< value to be taken as no data besides what the file declares
+    std::string crs = {};                    ///< e.g. "EPSG:32611": replaces what the file says; empty: the file's own
+    int band = 1;                            ///< that holds the heights
+    std::optional<Window> window = {};       ///< only the cells whose middle lies in it, in the file's coordinates
+    std::optional<double> sea_level_m = {};  ///< cells at or below are no data
+    std::string reproject = {};              ///< coordinate system to warp to, after all of the above
+    std::optional<double> cell_m = {};       ///< size of the cells to warp to
 };
 
 /// A raster with what the reader noticed, one sentence each, for the user to see (a missing CRS taken as WGS 84, a
@@ -55,8 +65,9 @@ struct Layer {
     std::vector<CellColor> colors = {};  ///< of uint8; the other values are white. None: no colour table
 };
 
-/// Writes a GeoTIFF with the statistics of its values, by which viewers stretch their colours (ZSTD with predictor where GDAL has it, else DEFLATE), bytes a function of the values alone.
-/// Throws Error when it cannot be written whole (permissions, full disk).
+/// Writes a GeoTIFF with the statistics of its values, by which viewers stretch their colours (ZSTD with predictor
+/// where GDAL has it, else DEFLATE), bytes a function of the values alone. Throws Error when it cannot be written whole
+/// (permissions, full disk).
 void write_raster(const std::filesystem::path&, const Grid&, const Placement&, std::span<const double> values,
                   const Layer&);
 

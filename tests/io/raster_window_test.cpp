@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Parts of a file, and a file on other cells.
+#include <gdal_priv.h>
+#include <ogr_spatialref.h>
+
+#include <array>
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/temp_folder.hpp"
+#include "thalweg/io/raster_file.hpp"
+
+using namespace thalweg;
+using Catch::Matchers::Contains;
+using test::error_of;
+using test::TempFolder;
+
+namespace {
+
+/// A file of 40 x 50 cells of 30 m in UTM zone 11; each band holds its own number times height(x, y) of the cells'
+/// middles.
+template <class Height>
+std::filesystem::path write(const TempFolder& temp, const Height& height, int bands = 1, double step_y = -30) {
+    GDALAllRegister();
+    const std::filesystem::path path = temp / "dem.tif";
+    GDALDatasetUniquePtr file(
+        GetGDALDriverManager()->GetDriverByName("GTiff")->Create(path.c_str(), 50, 40, bands, GDT_Float64, nullptr));
+    std::array<double, 6> transform{500000, 30, 0, step_y < 0 ? 4000000.0 : 3998800.0, 0, step_y};
+    file->SetGeoTransform(transform.data());
+    OGRSpatialReference system;
+    system.importFromEPSG(32611);
+    file->SetSpatialRef(&system);
+    for (int band = 1; band <= bands; ++band) {
+        std::vector<double> values;
+        for (int row = 0; row < 40; ++row) {
+            for (int col = 0; col < 50; ++col) {
+                values.push_back(band * height(transform[0] + (col + 0.5) * 30, transform[3] + (row + 0.5) * step_y));
+            }
+        }
+        REQUIRE(file->GetRasterBand(band)->RasterIO(GF_Write, 0, 0, 50, 40, values.data(), 50, 40, GDT_Float64, 0, 0,
+                                                    nullptr) == CE_None);
+    }
+    return path;
+}
+
+double plane(double x, double y) { return 100 + 0.02 * (x - 500000) + 0.05 * (y - 3998800); }
+
+Point middle(const Raster& raster, Index node) {
+    return raster.placement.center(raster.grid.row(node), raster.grid.col(node));
+}
+
+}  // namespace
+
+TEST_CASE("A window keeps the cells whose middle lies in it, where they were, whichever way the rows run", "[window]") {
+    const double step_y = GENERATE(-30.0, 30.0);
+    const TempFolder temp;
+    const auto path = write(temp, plane, 1, step_y);
+    const Raster whole = io::read_raster(path).raster;
+    const io::Window window{500314, 3998911, 500617, 3999209};
+    const Raster part = io::read_raster(path, {.window = window}).raster;
+    Index inside = 0;
+    for (Index node = 0; node < whole.grid.size(); ++node) {
+        const Point p = middle(whole, node);
+        inside += p.x > window.west && p.x < window.east && p.y > window.south && p.y < window.north;
+    }
+    CHECK(part.grid.size() == inside);
+    for (Index node = 0; node < part.grid.size(); ++node) {
+        const Point p = middle(part, node);
+        CHECK((p.x > window.west && p.x < window.east && p.y > window.south && p.y < window.north));
+        CHECK(part.values[node] == Approx(plane(p.x, p.y)).epsilon(1e-12));
+    }
+}
+
+TEST_CASE("A window that goes beyond the file ends with it; one beside the file is refused", "[window]") {
+    const TempFolder temp;
+    const auto path = write(temp, plane);
+    CHECK(io::read_raster(path, {.window = io::Window{0, 0, 1e7, 1e7}}).raster.grid.size() == 2000);
+    const auto refused = [&](const io::Window& window) {
+        return error_of([&] { io::read_raster(path, {.window = window}); });
+    };
+    CHECK_THAT(refused({600000, 3998900, 600500, 3999000}), Contains("reaches from 500000 to 501500"));
+    CHECK_THAT(refused({500000, 3998900, 500020, 3999000}), Contains("fewer than 2 x 2 cells"));
+}
+
+TEST_CASE("The band that is asked for holds the heights; one that is not there is refused", "[window]") {
+    const TempFolder temp;
+    const auto path = write(temp, plane, 3);
+    const Raster first = io::read_raster(path).raster, third = io::read_raster(path, {.band = 3}).raster;
+    for (Index node = 0; node < first.grid.size(); ++node) CHECK(third.values[node] == 3 * first.values[node]);
+    CHECK_THAT(error_of([&] { io::read_raster(path, {.band = 4}); }), Contains("no band 4: it has 3"));
+}
+
+TEST_CASE("The sea is no data at and below its level, and all sea is refused", "[window]") {
+    const TempFolder temp;
+    const auto path = write(temp, plane);
+    const Raster land = io::read_raster(path, {.sea_level_m = 120}).raster;
+    for (Index node = 0; node < land.grid.size(); ++node) {
+        const Point p = middle(land, node);
+        CHECK(std::isnan(land.values[node]) == (plane(p.x, p.y) <= 120));
+    }
+    CHECK_THAT(error_of([&] { io::read_raster(path, {.sea_level_m = 1e4}); }), Contains("holds no data"));
+}
+
+TEST_CASE("A plane on other cells is the same plane, and the sea does not bleed into it", "[window]") {
+    const TempFolder temp;
+    const auto path = write(temp, plane);
+    for (const double cell : {10.0, 45.0, 60.0, 90.0}) {
+        // Where new and old cells do not nest, GDAL is off by a share of a cell.
+        const double margin = cell == 45 ? 0.1 : 1e-6;
+        CAPTURE(cell);
+        const Raster warped = io::read_raster(path, {.sea_level_m = 110, .cell_m = cell}).raster;
+        CHECK(warped.placement.cell_width == Approx(cell));
+        Index known = 0;
+        for (Index node = 0; node < warped.grid.size(); ++node) {
+            const Point p = middle(warped, node);
+            const bool inner =
+                p.x > 500000 + cell && p.x < 501500 - cell && p.y > 3998800 + cell && p.y < 4000000 - cell;
+            if (std::isnan(warped.values[node]) || !inner || plane(p.x, p.y) < 113 + 0.1 * cell) continue;
+            ++known;
+            CHECK(warped.values[node] == Approx(plane(p.x, p.y)).margin(margin));
+        }
+        CHECK(known > 50);
+    }
+}
+
+TEST_CASE("Another coordinate system puts each height where it lies on the earth", "[window]") {
+    const TempFolder temp;
+    const auto path = write(temp, plane);
+    const Raster warped = io::read_raster(path, {.reproject = "EPSG:32610", .cell_m = 30}).raster;
+    OGRSpatialReference from, to;
+    from.importFromEPSG(32610);
+    to.importFromEPSG(32611);
+    const std::unique_ptr<OGRCoordinateTransformation> back(OGRCreateCoordinateTransformation(&from, &to));
+    Index known = 0;
+    for (Index node = 0; node < warped.grid.size(); ++node) {
+        const Point p = middle(warped, node);
+        double x = p.x, y = p.y;
+        REQUIRE(back->Transform(1, &x, &y));
+        const bool inner = x > 500060 && x < 501440 && y > 3998860 && y < 3999940;
+        if (!inner) continue;
+        ++known;
+        CHECK(warped.values[node] == Approx(plane(x, y)).margin(1e-3));
+    }
+    CHECK(known > 1000);
+    CHECK_THAT(error_of([&] { io::read_raster(path, {.reproject = "Atlantis"}); }), Contains("no coordinate system"));
+    CHECK_THAT(error_of([&] { io::read_raster(path, {.reproject = "EPSG:4326", .cell_m = 30}); }),
+               Contains("projected coordinate system"));
+}
