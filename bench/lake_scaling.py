@@ -43,10 +43,12 @@ def draw(times, path):
         nodes = sorted(of_nodes)
         per_node = [of_nodes[n] * 1e6 / n for n in nodes]
         axes.loglog(nodes, per_node, "o-", label=f"{SURFACES[surface]}: exponent {exponent(of_nodes):.3f}")
+    for formatter in (axes.yaxis.set_major_formatter, axes.yaxis.set_minor_formatter):
+        formatter("{x:g}")
     axes.set_xlabel("nodes")
     axes.set_ylabel("routing and draining all lakes, ns per node")
     axes.legend()
-    figure.savefig(path, dpi=150)
+    figure.savefig(path, dpi=100)
 
 
 def main():
