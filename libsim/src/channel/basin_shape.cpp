@@ -63,13 +63,6 @@ Trunks trunks(const terrain::FlowGraph& graph, const StreamNetwork& network, con
     return trunk;
 }
 
-/// Where the trunk leaves the basin into nothing it is taken to go on straight.
-Point downstream_of(Index node, const TrunkNode& at, const OffsetOf& offset) {
-    if (at.down != none) return offset(node, at.down);
-    const Point up = offset(node, at.up);
-    return {-up.x, -up.y};
-}
-
 }  // namespace
 
 BasinShape basin_shape(double area_m2, double length_m, double perimeter_m, double relief_m) {
@@ -114,8 +107,8 @@ std::vector<TrunkSides> trunk_sides(const terrain::FlowGraph& graph, std::span<c
         const Index receiver = graph.receiver[node];
         if (receiver == none || !on_trunk[receiver] || on_trunk[node]) continue;
         const TrunkNode& at = trunk.at(receiver);
-        if (at.up == none) continue;
-        const Point down = downstream_of(receiver, at, offset);
+        if (at.up == none || at.down == none) continue;
+        const Point down = offset(receiver, at.down);
         const bool left = turn(down, offset(receiver, node)) < turn(down, offset(receiver, at.up));
         TrunkSides& side = sides[at.basin];
         (left ? side.left_m2 : side.right_m2) += drainage_area_m2[node];

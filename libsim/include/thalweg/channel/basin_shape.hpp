@@ -37,8 +37,8 @@ struct TrunkSides {
 };
 
 /// The trunk is the main stream (largest area at each junction) that ends in the basin's outlet. What flows into it
-/// comes from the left or the right of its course there; what flows into its source, and the trunk's own cells, from
-/// neither. Both are 0 where no link ends in the outlet. Linear.
+/// comes from the left or the right of its course there; what flows into its source, or into an outlet from which the water
+/// goes nowhere, and the trunk's own cells, from neither. Both are 0 where no link ends in the outlet. Linear.
 std::vector<TrunkSides> trunk_sides(const terrain::FlowGraph&, std::span<const double> drainage_area_m2,
                                     const StreamNetwork&, const MainStreams& of_links, std::span<const terrain::Basin>,
                                     const OffsetOf&);
