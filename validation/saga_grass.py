@@ -13,7 +13,7 @@ own way, and r.watershed searches its own way through what was filled; so what l
 GRASS of filled cells and of other directions, is left out, and it is told how much is left.
 
 The embedded DEM, put on a plane of 90 m cells, is always compared. Others are looked for in --dems or in the folder that
-the environment variable THALWEG_DEMS names. Where a program is missing its comparisons are skipped; with nothing to
+the environment variable THALWEG_DEM_DIR names. Where a program is missing its comparisons are skipped; with nothing to
 compare the script ends with 77, which ctest shows as skipped.
 """
 import argparse
@@ -259,11 +259,11 @@ def dems_of(arguments):
     if arguments.dem:
         return arguments.dem
     found = [EMBEDDED]
-    folder = arguments.dems or os.environ.get("THALWEG_DEMS")
+    folder = arguments.dems or os.environ.get("THALWEG_DEM_DIR")
     if folder:
         found += [Path(folder) / name for name in DEMS if (Path(folder) / name).is_file()]
     if len(found) == 1:
-        print("saga_grass: no other DEMs; name their folder by --dems or THALWEG_DEMS", flush=True)
+        print("saga_grass: no other DEMs; name their folder by --dems or THALWEG_DEM_DIR", flush=True)
     return found
 
 
