@@ -123,20 +123,24 @@ study::Experiment experiment(const ExperimentOptions& options) {
 
 namespace {
 
-/// One status line that rewrites itself on a terminal (elsewhere nothing), and warnings kept back until the work is
-/// done: a command that fails says exactly one line.
+/// One status line that rewrites itself on a terminal (elsewhere nothing), and reports and warnings kept back until the
+/// work is done: a command that fails says exactly one line.
 class Console {
   public:
-    explicit Console(bool quiet) : shows_status_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+    explicit Console(bool quiet) : quiet_(quiet), shows_status_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
     ~Console() { clear(); }
 
     study::Messages messages() {
         return {.progress = [this](const std::string& text) { status(text); },
-                .warning = [this](const std::string& text) { warnings_.push_back(text); }};
+                .warning = [this](const std::string& text) { warnings_.push_back(text); },
+                .report = [this](const std::string& text) { reports_.push_back(text); }};
     }
 
     void finish() {
         clear();
+        for (const std::string& text : reports_) {
+            if (!quiet_) std::cerr << "thalweg: " << text << '\n';
+        }
         for (const std::string& text : warnings_) std::cerr << "thalweg: warning: " << text << '\n';
     }
 
@@ -150,8 +154,9 @@ class Console {
         if (shows_status_) std::cerr << start_of_line << std::flush;
     }
 
+    bool quiet_;
     bool shows_status_;
-    std::vector<std::string> warnings_;
+    std::vector<std::string> reports_, warnings_;
 };
 
 }  // namespace

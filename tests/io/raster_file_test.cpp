@@ -14,8 +14,8 @@
 #include <thread>
 
 #include "io/file_limit.hpp"
-#include "support/temp_folder.hpp"
 #include "io/zip_archive.hpp"
+#include "support/temp_folder.hpp"
 
 using namespace thalweg;
 using Catch::Matchers::Contains;
@@ -497,6 +497,34 @@ TEST_CASE("pictures and files of many bands are read with a warning", "[raster]"
     CHECK(warned(io::read_raster(folder / "b.tif"), "picture"));
 }
 
+TEST_CASE("BigTIFF, tiles, strips and every predictor and compression give the same heights", "[raster]") {
+    const TempFolder folder;
+    constexpr int rows = 37, cols = 53;
+    std::vector<double> heights;
+    for (int i = 0; i < rows * cols; ++i) heights.push_back(std::round(500 + 300 * std::sin(0.01 * i) + i % cols));
+    using Options = std::vector<std::string>;
+    const std::vector<std::pair<GDALDataType, Options>> kinds{
+        {GDT_Int16, {"BIGTIFF=YES"}},
+        {GDT_Float32, {"BIGTIFF=YES", "TILED=YES", "BLOCKXSIZE=16", "BLOCKYSIZE=32"}},
+        {GDT_Int16, {"COMPRESS=DEFLATE", "PREDICTOR=2"}},
+        {GDT_Float32, {"COMPRESS=LZW", "PREDICTOR=3"}},
+        {GDT_Float64, {"COMPRESS=ZSTD", "PREDICTOR=3", "TILED=YES", "BLOCKXSIZE=16", "BLOCKYSIZE=16"}},
+        {GDT_Float32, {"COMPRESS=LERC"}},
+        {GDT_UInt16, {"COMPRESS=PACKBITS", "BLOCKYSIZE=5"}},
+        {GDT_Int32, {"COMPRESS=LZMA", "ENDIANNESS=BIG"}}};
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        INFO(i);
+        FileSpec spec;
+        spec.rows = rows, spec.cols = cols, spec.type = kinds[i].first, spec.options = kinds[i].second;
+        const auto path = make(folder, std::to_string(i) + ".tif", spec, heights);
+        CHECK(io::read_raster(path).raster.values == heights);
+    }
+    std::ifstream big(folder / "0.tif", std::ios::binary);
+    char head[4] = {};
+    big.read(head, 4);
+    CHECK(static_cast<int>(head[2]) == 43);  // BigTIFF's own version number
+}
+
 TEST_CASE("what is written is read back to the last bit", "[raster]") {
     const TempFolder folder;
     const Grid grid = plane_grid(300, 270, 10, 12);
@@ -589,7 +617,8 @@ TEST_CASE("Colours and statistics stand in the file itself, and change no value"
     const TempFolder temp;
     const Grid grid = plane_grid(2, 3, 10, 10);
     const Placement place{.west = 0, .north = 20, .cell_width = 10, .cell_height = 10, .crs_wkt = ""};
-    io::write_raster(temp / "heights.tif", grid, place, std::vector<double>{1000, 1002, no_value, 1004, 1006, 1008}, {});
+    io::write_raster(temp / "heights.tif", grid, place, std::vector<double>{1000, 1002, no_value, 1004, 1006, 1008},
+                     {});
     io::write_raster(temp / "codes.tif", grid, place, std::vector<double>{0, 1, 255, 4, 1, 0},
                      {.type = io::CellType::uint8, .nodata = 255, .colors = {{0, 9, 8, 7}, {4, 30, 20, 10}}});
     CHECK(std::distance(std::filesystem::directory_iterator(temp / ""), {}) == 2);  // nothing beside them

@@ -187,8 +187,9 @@ ReadResult read_dataset(GDALDataset& dataset, const std::string& name, const Rea
     if (order == RowOrder::south_to_north) turn_over(result.raster);
     blank_sea(options, result.raster.values);
     check_any_data(result, name);
-    const std::vector<std::string> noticed = survey_heights(result.raster, name);
-    result.warnings.insert(result.warnings.end(), noticed.begin(), noticed.end());
+    const HeightsNoticed noticed = notice_heights(result.raster, name);
+    result.void_cells = noticed.void_cells;
+    result.warnings.insert(result.warnings.end(), noticed.warnings.begin(), noticed.warnings.end());
     return result;
 }
 

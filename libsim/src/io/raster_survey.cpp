@@ -122,15 +122,16 @@ std::size_t cells_in_holes(const Raster& raster) {
 
 }  // namespace
 
-std::vector<std::string> survey_heights(const Raster& raster, const std::string& name) {
-    std::vector<std::string> warnings;
+HeightsNoticed notice_heights(const Raster& raster, const std::string& name) {
+    HeightsNoticed noticed;
+    std::vector<std::string>& warnings = noticed.warnings;
     const auto warn = [&](const std::optional<std::string>& text) {
         if (text) warnings.push_back(*text);
     };
     const Heights heights = summarise(raster.values);
     if (heights.lowest == heights.highest) {
         warn(fmt::format("all cells of {} are at {} m: a plain has no drainage to measure", name, heights.lowest));
-        return warnings;
+        return noticed;
     }
     const std::vector<double> rim = rim_values(raster);
     const std::optional<double> frequent = most_frequent(rim);
@@ -143,13 +144,14 @@ std::vector<std::string> survey_heights(const Raster& raster, const std::string&
                          heights.negative, name, heights.lowest));
     }
     const std::size_t holes = heights.count < raster.values.size() ? cells_in_holes(raster) : 0;
+    noticed.void_cells = static_cast<Index>(holes);
     if (holes > 0) {
         warn(
             fmt::format("{} cells of {} are holes of no data inside the terrain: water that reaches one leaves the map "
                         "there (gdal_fillnodata.py closes them)",
                         holes, name));
     }
-    return warnings;
+    return noticed;
 }
 
 }  // namespace thalweg::io

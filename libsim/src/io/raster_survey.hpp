@@ -8,8 +8,13 @@
 
 namespace thalweg::io {
 
+struct HeightsNoticed {
+    std::vector<std::string> warnings;
+    Index void_cells = 0;  ///< without data inside the terrain
+};
+
 /// What in the heights would make a measurement silently wrong, one sentence each: a border of one value that is not
 /// declared as no data, holes, heights below the sea.
-std::vector<std::string> survey_heights(const Raster&, const std::string& name);
+HeightsNoticed notice_heights(const Raster&, const std::string& name);
 
 }  // namespace thalweg::io

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "study/ingest.hpp"
 #include "study/layer_styles.hpp"
 #include "study/report_json.hpp"
 #include "thalweg/core/error.hpp"
@@ -140,7 +141,9 @@ NamedRaster read_dem(const std::filesystem::path& path, const io::ReadOptions& o
             .sha256 = sha256,
             .crs_name = result.crs_name,
             .warnings = std::move(result.warnings),
-            .origin = origin};
+            .origin = origin,
+            .vertical_unit_m = result.vertical_unit_m,
+            .void_cells = result.void_cells};
 }
 
 std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const std::filesystem::path& folder,
@@ -163,6 +166,12 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
     summary["routing"] = routing_name(options.routing);
     summary["slope_area"]["segment_drop_m"] = m.segment_drop_m;
     summary["slope_area"]["vertical_quantum_m"] = m.vertical_quantum_m;
+    const HeightSurvey survey = survey_heights(dem.raster);
+    const std::vector<std::string> hints = survey_hints(survey, dem.raster, m.vertical_quantum_m);
+    summary["ingest"] = ingest_json(dem, m, survey, hints);
+    explain_null("ingest", summary["ingest"], "there are too few cells of different height", notes);
+    messages.report(ingest_line(dem, m));
+    for (const std::string& hint : hints) messages.warning(hint);
     for (const std::string& note : notes) {
         if (note.starts_with("channels:")) messages.warning(note);
     }

@@ -150,6 +150,8 @@ NamedRaster cut_to_outlet(const NamedRaster& dem, const OutletRequest& request, 
                       .crs_name = dem.crs_name,
                       .warnings = dem.warnings,
                       .origin = dem.origin,
+                      .vertical_unit_m = dem.vertical_unit_m,
+                      .void_cells = dem.void_cells,
                       .outlet = cut.report};
     if (!cut.report.complete) {
         basin.warnings.push_back(

@@ -34,6 +34,7 @@ struct ReadResult {
     std::vector<std::string> warnings;
     std::string crs_name;        ///< "EPSG:32611" where known, else the name in the WKT, else ""
     double vertical_unit_m = 1;  ///< heights were multiplied by this
+    Index void_cells = 0;        ///< without data inside the terrain, where no way through voids leads to the edge
 };
 
 /// Elevations from the first band of any raster that GDAL reads, in metres, with the grid's measures: metres on the

@@ -17,6 +17,7 @@ namespace thalweg::study {
 struct Messages {
     std::function<void(const std::string&)> progress = [](const std::string&) {};
     std::function<void(const std::string&)> warning = [](const std::string&) {};
+    std::function<void(const std::string&)> report = [](const std::string&) {};  ///< what was found, in a line
 };
 
 /// Where a DEM comes from, as the provenance that `thalweg fetch` writes beside it says.
@@ -37,6 +38,8 @@ struct NamedRaster {
     std::string crs_name;
     std::vector<std::string> warnings;
     std::optional<Origin> origin;
+    double vertical_unit_m = 1;               ///< heights were multiplied by this
+    Index void_cells = 0;                     ///< without data inside the terrain
     std::optional<OutletReport> outlet = {};  ///< of the catchment that it was cut down to
 };
 

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "study/ingest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "thalweg/core/statistics.hpp"
+
+namespace thalweg::study {
+namespace {
+
+double share(double part, double whole) { return whole > 0 ? part / whole : 0; }
+
+/// Drainage trees of at least the channel threshold that reach beyond the data; the smallest source where there is
+/// none.
+std::size_t cut_basins(const RasterMeasurement& m) {
+    const ChannelStatistics& c = m.statistics.channels;
+    const double from_m2 = std::isnan(c.threshold_area_m2) ? c.source_area_m2[0] : c.threshold_area_m2;
+    if (std::isnan(from_m2)) return 0;
+    const auto trees = terrain::basins(m.terrain.graph, m.terrain.drainage_area_m2, m.terrain.complete, from_m2,
+                                       terrain::EdgeBasins::keep);
+    return static_cast<std::size_t>(std::ranges::count_if(trees, [](const auto& tree) { return !tree.complete; }));
+}
+
+}  // namespace
+
+Json ingest_json(const NamedRaster& dem, const RasterMeasurement& m, const HeightSurvey& s,
+                 const std::vector<std::string>& hints) {
+    const Grid& grid = dem.raster.grid;
+    const Placement& p = dem.raster.placement;
+    return {{"vertical_unit_m", dem.vertical_unit_m},
+            {"cell_width", p.cell_width},
+            {"cell_height", p.cell_height},
+            {"cell_anisotropy", mean(grid.east_west) / mean(grid.north_south)},
+            {"nodata_share", share(grid.size() - m.valid_cells, grid.size())},
+            {"void_cells", dem.void_cells},
+            {"pits", m.conditioning.pits},
+            {"flat_share", share(m.conditioning.flat_cells, m.valid_cells)},
+            {"cut_basins", cut_basins(m)},
+            {"vertical_quantum_m", m.vertical_quantum_m},
+            {"median_step_m", number(s.median_step_m)},
+            {"level_share", number(s.level_share)},
+            {"most_frequent_m", number(s.most_frequent_m)},
+            {"most_frequent_share", number(s.most_frequent_share)},
+            {"zero_share", number(s.zero_share)},
+            {"row_striping", number(s.row_striping)},
+            {"column_striping", number(s.column_striping)},
+            {"repeated_rows", number(s.repeated_rows)},
+            {"repeated_columns", number(s.repeated_columns)},
+            {"hints", hints}};
+}
+
+std::string ingest_line(const NamedRaster& dem, const RasterMeasurement& m) {
+    const Grid& grid = dem.raster.grid;
+    const terrain::Hypsometry& h = m.statistics.hypsometry;
+    const std::string steps =
+        m.vertical_quantum_m > 0 ? fmt::format(" in steps of {:.3g} m", m.vertical_quantum_m) : "";
+    return fmt::format(
+        "{}: {}, {} x {} cells of {:.4g} x {:.4g} m, {:.1f} to {:.1f} m high{}; no data {:.2g} %, {} pits, flat {:.2g} "
+        "%, "
+        "{:.0f} % of the channel cells in complete catchments",
+        dem.file, dem.crs_name.empty() ? "no coordinate system" : dem.crs_name, grid.rows, grid.cols,
+        mean(grid.east_west), mean(grid.north_south), h.minimum_m, h.maximum_m, steps,
+        100 * share(grid.size() - m.valid_cells, grid.size()), m.conditioning.pits,
+        100 * share(m.conditioning.flat_cells, m.valid_cells),
+        std::isnan(m.statistics.channels.share_used) ? 0 : 100 * m.statistics.channels.share_used);
+}
+
+}  // namespace thalweg::study

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "thalweg/study/height_survey.hpp"
+
+#include <catch2/catch.hpp>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "support/drawing.hpp"
+#include "support/drawn_catchment.hpp"
+#include "support/temp_folder.hpp"
+#include "support/terrains.hpp"
+#include "thalweg/study/analyze.hpp"
+
+using namespace thalweg;
+using namespace thalweg::study;
+using support::raster_of;
+using Json = nlohmann::json;
+
+namespace {
+
+/// Noise smoothed over three cells each way, so that neighbours know of each other as in terrain.
+Raster hills(Index rows, Index cols, std::uint64_t seed) {
+    const auto noise = support::noise_terrain(rows + 2, cols + 2, seed);
+    return raster_of(support::terrain_of("hills", rows, cols, [&](Index r, Index c) {
+        double sum = 0;
+        for (Index i = 0; i < 3; ++i) {
+            for (Index j = 0; j < 3; ++j) sum += noise.elevation_m[(r + i) * (cols + 2) + c + j];
+        }
+        return 10 * sum;
+    }));
+}
+
+std::string hints_of(const Raster& raster, double quantum_m = 0) {
+    return Json(survey_hints(survey_heights(raster), raster, quantum_m)).dump();
+}
+
+}  // namespace
+
+TEST_CASE("A drawn raster has the shares that one counts on it", "[survey]") {
+    const auto d = support::draw(R"(
+        1 1 2 4 7
+        1 1 2 4 7
+        0 5 5 # 5
+        0 0 5 6 6
+        3 8 1 9 2)");
+    const HeightSurvey s = survey_heights(raster_of({"drawn", plane_grid(5, 5, 1, 1), d.values}));
+    CHECK(s.most_frequent_m == 1);
+    CHECK(s.most_frequent_share == Approx(5.0 / 24));
+    CHECK(s.zero_share == Approx(3.0 / 24));
+    CHECK(s.level_share == Approx(3.0 / 18));   // 5 5, 0 0 and 6 6; the ones are the most frequent height
+    CHECK(s.median_step_m == 3);                // 1 2 3, 1 2 3, 5, 5 1, 5 7 8 7
+    CHECK(s.repeated_rows == Approx(1.0 / 3));  // of the rows within, the first repeats the one before
+    CHECK(s.repeated_columns == 0);
+}
+
+TEST_CASE("Striping is the share that rows have in common, by hand", "[survey]") {
+    // Second differences across the one inner row: 2, 2, 2 and -1: common (5²)/4 of 13.
+    const auto d = support::draw(R"(
+        0 0 0 0
+        2 2 2 -1
+        0 0 0 0)");
+    CHECK(survey_heights(raster_of({"drawn", plane_grid(3, 4, 1, 1), d.values})).row_striping == Approx(25.0 / 4 / 13));
+}
+
+TEST_CASE(
+    "Hills are not striped, whatever their seed; with stripes of a tenth of their height they are, and the right way",
+    "[survey]") {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const Raster plain = hills(200, 300, seed);
+        INFO(seed);
+        CHECK(hints_of(plain).find("striped") == std::string::npos);
+        Raster along_columns = plain, along_rows = plain;
+        Random random(seed, 9);
+        std::vector<double> offset(300);
+        for (double& each : offset) each = 6 * random.uniform();
+        for (Index node = 0; node < plain.grid.size(); ++node) {
+            along_columns.values[node] += offset[plain.grid.col(node)];
+            along_rows.values[node] += offset[plain.grid.row(node)];
+        }
+        CHECK(hints_of(along_columns).find("striped along columns") != std::string::npos);
+        CHECK(hints_of(along_columns).find("striped along rows") == std::string::npos);
+        CHECK(hints_of(along_rows).find("striped along rows") != std::string::npos);
+        CHECK(hints_of(along_rows).find("striped along columns") == std::string::npos);
+    }
+}
+
+TEST_CASE("Repeated values, terraces, one value in many cells and oblong cells are hinted at, and only they",
+          "[survey]") {
+    const Raster plain = hills(60, 80, 1);
+    CHECK(hints_of(plain) == "[]");
+    Raster doubled = plain, terraced = plain, filled = plain;
+    for (Index node = 0; node < plain.grid.size(); ++node) {
+        const Index row = plain.grid.row(node), col = plain.grid.col(node);
+        doubled.values[node] = plain.values[row / 2 * 80 + col / 2];
+        terraced.values[node] = std::round(plain.values[node] / 20) * 20;
+        if (row > 10 && row < 30 && col > 10 && col < 30) filled.values[node] = -5;
+    }
+    CHECK(hints_of(doubled).find("50 % of the rows repeat") != std::string::npos);
+    CHECK(hints_of(doubled).find("% of the columns repeat") != std::string::npos);
+    CHECK(hints_of(terraced, 20).find("heights being multiples of 20 m") != std::string::npos);
+    CHECK(hints_of(filled).find("exactly -5 m") != std::string::npos);
+    Raster oblong = plain;
+    oblong.grid = plane_grid(60, 80, 10, 2);
+    CHECK(hints_of(oblong).find("5 times as wide as high") != std::string::npos);
+}
+
+TEST_CASE("Rasters without anything to count have no shares, and are no error", "[survey]") {
+    const HeightSurvey s = survey_heights(raster_of(support::flat_terrain(2, 2)));
+    CHECK(std::isnan(s.row_striping));
+    CHECK(std::isnan(s.repeated_rows));
+    CHECK(std::isnan(s.median_step_m));
+    CHECK(s.most_frequent_share == 1);
+    Raster empty = raster_of(support::flat_terrain(4, 4));
+    for (double& value : empty.values) value = support::nodata;
+    CHECK(std::isnan(survey_heights(empty).most_frequent_share));
+    CHECK(hints_of(empty) == "[]");
+}
+
+TEST_CASE("The summary and one line say how the DEM came", "[survey]") {
+    const test::TempFolder temp;
+    NamedRaster dem{support::drawn_catchment(), "drawn.tif", "", "", {}, {}};
+    dem.vertical_unit_m = 0.3048;
+    dem.void_cells = 3;
+    MeasureOptions options;
+    options.channel_area_m2 = 200;
+    std::vector<std::string> lines;
+    const Messages messages{.report = [&](const std::string& line) { lines.push_back(line); }};
+    const Json ingest = Json::parse(analyze(dem, options, temp / "", messages))["ingest"];
+    CHECK(ingest["vertical_unit_m"] == 0.3048);
+    CHECK(ingest["void_cells"] == 3);
+    CHECK(ingest["nodata_share"].get<double>() == Approx(7.0 / 64));
+    CHECK(ingest["pits"] == 0);
+    CHECK(ingest["vertical_quantum_m"] == 0.5);
+    CHECK(ingest["cut_basins"].get<int>() >= 2);  // the two flanks, at least
+    REQUIRE(lines.size() == 1);
+    CHECK(lines[0].find("drawn.tif: no coordinate system, 8 x 8 cells of 10 x 10 m, -100.0 to 25.0 m high in steps of "
+                        "0.5 m") == 0);
+}
