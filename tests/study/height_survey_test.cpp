@@ -48,9 +48,11 @@ TEST_CASE("A drawn raster has the shares that one counts on it", "[survey]") {
     CHECK(s.most_frequent_m == 1);
     CHECK(s.most_frequent_share == Approx(5.0 / 24));
     CHECK(s.zero_share == Approx(3.0 / 24));
-    CHECK(s.level_share == Approx(3.0 / 18));   // 5 5, 0 0 and 6 6; the ones are the most frequent height
-    CHECK(s.median_step_m == 3);                // 1 2 3, 1 2 3, 5, 5 1, 5 7 8 7
-    CHECK(s.repeated_rows == Approx(1.0 / 3));  // of the rows within, the first repeats the one before
+    // East–west 5 5, 0 0 and 6 6, north–south 2 2, 4 4, 7 7, 0 0 and 5 5; the ones are the most frequent height.
+    CHECK(s.level_share == Approx(8.0 / 36));
+    // By size, of both directions: five of 1, three of 2, five of 3, three of 4, four of 5, two of 7 and two of 8.
+    CHECK(s.median_step_m == 3);
+    CHECK(s.repeated_rows == Approx(1.0 / 4));  // the second of five rows repeats the first
     CHECK(s.repeated_columns == 0);
 }
 
@@ -96,13 +98,57 @@ TEST_CASE("Repeated values, terraces, one value in many cells and oblong cells a
         terraced.values[node] = std::round(plain.values[node] / 20) * 20;
         if (row > 10 && row < 30 && col > 10 && col < 30) filled.values[node] = -5;
     }
-    CHECK(hints_of(doubled).find("50 % of the rows repeat") != std::string::npos);
+    CHECK(hints_of(doubled).find("51 % of the rows repeat") != std::string::npos);
     CHECK(hints_of(doubled).find("% of the columns repeat") != std::string::npos);
     CHECK(hints_of(terraced, 20).find("heights being multiples of 20 m") != std::string::npos);
     CHECK(hints_of(filled).find("exactly -5 m") != std::string::npos);
     Raster oblong = plain;
     oblong.grid = plane_grid(60, 80, 10, 2);
     CHECK(hints_of(oblong).find("5 times as wide as high") != std::string::npos);
+}
+
+TEST_CASE("A large raster is sampled alike from all its sides", "[survey]") {
+    for (const auto& [rows, cols] : {std::pair<Index, Index>{700, 601}, {604, 703}, {1200, 300}}) {
+        const Raster plain = hills(rows, cols, rows);
+        Raster turned = raster_of(support::terrain_of("turned", cols, rows, [&](Index r, Index c) {
+            return plain.values[std::size_t{rows - 1 - c} * cols + r];
+        }));
+        Raster mirrored = raster_of(support::terrain_of("mirrored", rows, cols, [&](Index r, Index c) {
+            return plain.values[std::size_t{r} * cols + cols - 1 - c];
+        }));
+        const HeightSurvey a = survey_heights(plain), b = survey_heights(turned), c = survey_heights(mirrored);
+        CHECK(a.median_step_m == b.median_step_m);
+        CHECK(a.median_step_m == c.median_step_m);
+        CHECK(a.most_frequent_m == b.most_frequent_m);
+        CHECK(a.most_frequent_m == c.most_frequent_m);
+        CHECK(a.row_striping == Approx(b.column_striping).epsilon(1e-10));
+        CHECK(a.column_striping == Approx(b.row_striping).epsilon(1e-10));
+        CHECK(a.row_striping == Approx(c.row_striping).epsilon(1e-10));
+        CHECK(a.column_striping == Approx(c.column_striping).epsilon(1e-10));
+    }
+}
+
+TEST_CASE("Striping of odd sizes with holes equals what a plain loop finds", "[survey]") {
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        const Index rows = static_cast<Index>(5 + 3 * seed), cols = static_cast<Index>(31 - 2 * seed);
+        Raster raster = hills(rows, cols, seed);
+        Random random(seed, 3);
+        for (double& height : raster.values) {
+            if (random.uniform() < 0.1) height = support::nodata;
+        }
+        double common = 0, squares = 0;
+        for (Index col = 1; col + 1 < cols; ++col) {
+            double sum = 0, count = 0;
+            for (Index row = 0; row < rows; ++row) {
+                const double* const z = &raster.values[std::size_t{row} * cols + col];
+                const double d = *z - (z[-1] + z[1]) / 2;
+                if (std::isnan(d)) continue;
+                sum += d, ++count, squares += d * d;
+            }
+            if (2 * count >= rows) common += sum * sum / count;
+        }
+        CHECK(survey_heights(raster).column_striping == Approx(common / squares).epsilon(1e-10));
+    }
 }
 
 TEST_CASE("Rasters without anything to count have no shares, and are no error", "[survey]") {

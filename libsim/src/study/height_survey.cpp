@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <numeric>
+#include <span>
 
 #include "thalweg/core/statistics.hpp"
 
@@ -14,72 +17,183 @@ namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-/// Rows to look at: all, or so many of a large raster.
-Index row_step(const Grid& grid) {
-    constexpr std::uint64_t most_cells = 4'000'000;
-    return static_cast<Index>(std::max<std::uint64_t>(1, std::uint64_t{grid.rows} * grid.cols / most_cells));
+/// Four cells at once. A comparison gives -1 in each lane where it holds.
+using Lanes = double __attribute__((vector_size(32)));
+using Counts = std::int64_t __attribute__((vector_size(32)));
+constexpr Index lanes = 4;
+
+Lanes load(const double* from) {
+    Lanes loaded;
+    std::memcpy(&loaded, from, sizeof loaded);
+    return loaded;
 }
 
-/// Second differences along one direction, gathered for each line across it.
+template <typename Number, typename Vector>
+void add_to_memory(Number* sums, Vector more) {
+    Vector before;
+    std::memcpy(&before, sums, sizeof before);
+    before += more;
+    std::memcpy(sums, &before, sizeof before);
+}
+
+/// Second differences of one direction, gathered for each line across it.
 struct Stripes {
     explicit Stripes(Index lines) : sum(lines, 0), count(lines, 0) {}
 
-    void add(Index line, double difference) {
-        if (std::isnan(difference)) return;
-        sum[line] += difference;
-        ++count[line];
-        squares += difference * difference;
-        ++cells;
-    }
     double share(Index line_length) const {
         double common = 0;
         for (std::size_t line = 0; line < sum.size(); ++line) {
-            if (count[line] > 0 && 2 * count[line] >= line_length) common += sum[line] * sum[line] / count[line];
+            const auto cells = static_cast<double>(count[line]);
+            if (count[line] > 0 && 2 * cells >= line_length) common += sum[line] * sum[line] / cells;
         }
         return squares > 0 ? common / squares : nan;
     }
 
     std::vector<double> sum;
-    std::vector<Index> count;
+    std::vector<std::int64_t> count;
     double squares = 0;
-    std::size_t cells = 0;
 };
 
-/// Whether lines equal the ones before them. Lines of a single height (a sea, no data) say nothing.
-class Repeats {
-  public:
-    explicit Repeats(Index lines)
-        : differs_(lines, 0), lowest_(lines, std::numeric_limits<double>::infinity()), highest_(lines, -lowest_[0]) {}
-
-    void add(Index line, double height, double before) {
-        const bool both_void = std::isnan(height) && std::isnan(before);
-        if (!both_void && height != before) differs_[line] = 1;
-        if (std::isnan(height)) return;
-        lowest_[line] = std::min(lowest_[line], height);
-        highest_[line] = std::max(highest_[line], height);
+/// Differences of a row from the mean of the rows beside it, into that row's sums.
+void add_row(Stripes& stripes, Index row, const double* z, Index cols) {
+    const double *const above = z - cols, *const below = z + cols;
+    Lanes sum{}, squares{};
+    Counts count{};
+    Index col = 0;
+    for (; col + lanes <= cols; col += lanes) {
+        const Lanes d = load(z + col) - 0.5 * (load(above + col) + load(below + col));
+        const Counts is_known = d == d;
+        const Lanes known = is_known ? d : Lanes{};
+        sum += known;
+        count -= is_known;
+        squares += known * known;
     }
-    double share() const {
-        double lines = 0, repeated = 0;
-        for (std::size_t line = 0; line < differs_.size(); ++line) {
-            if (!(highest_[line] > lowest_[line])) continue;
-            ++lines;
-            repeated += !differs_[line];
-        }
-        return lines > 0 ? repeated / lines : nan;
+    for (; col < cols; ++col) {
+        const double d = z[col] - 0.5 * (above[col] + below[col]);
+        if (std::isnan(d)) continue;
+        sum[0] += d;
+        ++count[0];
+        squares[0] += d * d;
     }
+    stripes.sum[row] = sum[0] + sum[1] + sum[2] + sum[3];
+    stripes.count[row] = count[0] + count[1] + count[2] + count[3];
+    stripes.squares += squares[0] + squares[1] + squares[2] + squares[3];
+}
 
-  private:
-    std::vector<std::uint8_t> differs_;
-    std::vector<double> lowest_, highest_;
-};
+/// Differences of each cell of a row from the mean of those left and right of it, into the sums of its column.
+void add_columns(Stripes& stripes, const double* z, Index cols) {
+    double* const sum = stripes.sum.data();
+    std::int64_t* const count = stripes.count.data();
+    Lanes squares{};
+    Index col = 1;
+    for (; col + lanes < cols; col += lanes) {
+        const Lanes d = load(z + col) - 0.5 * (load(z + col - 1) + load(z + col + 1));
+        const Counts is_known = d == d;
+        const Lanes known = is_known ? d : Lanes{};
+        add_to_memory(sum + col, known);
+        add_to_memory(count + col, -is_known);
+        squares += known * known;
+    }
+    for (; col + 1 < cols; ++col) {
+        const double d = z[col] - 0.5 * (z[col - 1] + z[col + 1]);
+        if (std::isnan(d)) continue;
+        sum[col] += d;
+        ++count[col];
+        squares[0] += d * d;
+    }
+    stripes.squares += squares[0] + squares[1] + squares[2] + squares[3];
+}
+
+void measure_stripes(const Raster& raster, HeightSurvey& survey) {
+    const Grid& grid = raster.grid;
+    Stripes across_rows(grid.rows), across_cols(grid.cols);
+    for (Index row = 0; row < grid.rows; ++row) {
+        const double* const z = raster.values.data() + std::size_t{row} * grid.cols;
+        if (row > 0 && row + 1 < grid.rows) add_row(across_rows, row, z, grid.cols);
+        add_columns(across_cols, z, grid.cols);
+    }
+    survey.row_striping = across_rows.share(grid.cols);
+    survey.column_striping = across_cols.share(grid.rows);
+}
+
+bool same(double a, double b) { return a == b || (std::isnan(a) && std::isnan(b)); }
+
+/// Share of neighbouring lines that are equal. Lines of a single height (a sea, no data) say nothing.
+double share_repeated(const std::vector<std::uint8_t>& varied, const std::vector<std::uint8_t>& equals_last) {
+    double pairs = 0, repeated = 0;
+    for (std::size_t line = 1; line < varied.size(); ++line) {
+        if (!varied[line] && !varied[line - 1]) continue;
+        ++pairs;
+        repeated += equals_last[line];
+    }
+    return pairs > 0 ? repeated / pairs : nan;
+}
+
+/// Stops at the first cell of a row that decides, which in terrain is one of the first.
+double repeated_rows(const Raster& raster) {
+    const Grid& grid = raster.grid;
+    std::vector<std::uint8_t> varied(grid.rows, 0), equals_last(grid.rows, 0);
+    for (Index row = 0; row < grid.rows; ++row) {
+        const auto z = std::span(raster.values).subspan(std::size_t{row} * grid.cols, grid.cols);
+        const auto known = std::ranges::find_if(z, [](double height) { return !std::isnan(height); });
+        varied[row] =
+            std::any_of(known, z.end(), [&](double height) { return !std::isnan(height) && height != *known; });
+        equals_last[row] = row > 0 && std::equal(z.begin(), z.end(), z.begin() - grid.cols, same);
+    }
+    return share_repeated(varied, equals_last);
+}
+
+/// Goes row by row with the columns that are still undecided, in terrain soon none.
+double repeated_columns(const Raster& raster) {
+    const Grid& grid = raster.grid;
+    std::vector<std::uint8_t> varied(grid.cols, 0), equals_last(grid.cols, 1);
+    std::vector<double> first(grid.cols, nan);
+    std::vector<Index> unvaried(grid.cols), equal(grid.cols);
+    std::iota(unvaried.begin(), unvaried.end(), 0);
+    std::iota(equal.begin(), equal.end(), 0);
+    equal.erase(equal.begin());
+    for (Index row = 0; row < grid.rows && !(unvaried.empty() && equal.empty()); ++row) {
+        const double* const z = raster.values.data() + std::size_t{row} * grid.cols;
+        std::erase_if(unvaried, [&](Index col) {
+            if (std::isnan(first[col])) first[col] = z[col];
+            varied[col] = !std::isnan(z[col]) && z[col] != first[col];
+            return varied[col] != 0;
+        });
+        std::erase_if(equal, [&](Index col) {
+            equals_last[col] = same(z[col], z[col - 1]);
+            return equals_last[col] == 0;
+        });
+    }
+    return share_repeated(varied, equals_last);
+}
+
+/// Every so many lines from both ends inwards, so that a raster turned or mirrored has the same cells looked at.
+std::vector<Index> symmetric_lines(Index lines, Index step) {
+    std::vector<Index> chosen;
+    for (Index line = 0; line < lines; ++line) {
+        if (std::min(line, lines - 1 - line) % step == 0) chosen.push_back(line);
+    }
+    return chosen;
+}
+
+/// About `most` cells in rows and columns of even distance; all where there are no more.
+template <typename Visit>
+void sample_cells(const Grid& grid, Visit visit) {
+    constexpr double most = 65536;
+    const auto step = static_cast<Index>(std::ceil(std::sqrt(std::max(1.0, grid.size() / most))));
+    const std::vector<Index> cols = symmetric_lines(grid.cols, step);
+    for (const Index row : symmetric_lines(grid.rows, step)) {
+        for (const Index col : cols) visit(row, col);
+    }
+}
 
 /// The most frequent of a sample of the heights; NaN without data.
-double most_frequent(const std::vector<double>& values) {
-    constexpr std::size_t most = 65536;
+double most_frequent(const Raster& raster) {
     std::vector<double> sample;
-    for (std::size_t i = 0; i < values.size(); i += 1 + values.size() / most) {
-        if (!std::isnan(values[i])) sample.push_back(values[i]);
-    }
+    sample_cells(raster.grid, [&](Index row, Index col) {
+        const double height = raster.values[std::size_t{row} * raster.grid.cols + col];
+        if (!std::isnan(height)) sample.push_back(height);
+    });
     std::ranges::sort(sample);
     double found = nan;
     std::ptrdiff_t longest = 0;
@@ -94,7 +208,7 @@ double most_frequent(const std::vector<double>& values) {
 void count_values(const std::vector<double>& values, HeightSurvey& survey) {
     std::size_t valid = 0, frequent = 0, zero = 0;
     for (const double value : values) {
-        valid += !std::isnan(value);
+        valid += value == value;
         frequent += value == survey.most_frequent_m;
         zero += value == 0;
     }
@@ -107,50 +221,33 @@ void count_steps(const Raster& raster, HeightSurvey& survey) {
     const Grid& grid = raster.grid;
     std::size_t pairs = 0, level = 0;
     std::vector<double> steps;
-    for (Index row = 0; row < grid.rows; row += row_step(grid)) {
-        const double* const z = raster.values.data() + std::size_t{row} * grid.cols;
-        for (Index col = 1; col < grid.cols; ++col) {
-            const double step = std::abs(z[col] - z[col - 1]);
-            if (std::isnan(step)) continue;
-            ++pairs;
-            level += step == 0 && z[col] != survey.most_frequent_m;
-            if (step > 0) steps.push_back(step);
-        }
-    }
+    const auto look = [&](double here, double beside) {
+        const double step = std::abs(here - beside);
+        if (std::isnan(step)) return;
+        ++pairs;
+        level += step == 0 && here != survey.most_frequent_m;
+        if (step > 0) steps.push_back(step);
+    };
+    sample_cells(grid, [&](Index row, Index col) {
+        const double* const z = &raster.values[std::size_t{row} * grid.cols + col];
+        if (col > 0) look(*z, z[-1]);
+        if (col + 1 < grid.cols) look(*z, z[1]);
+        if (row > 0) look(*z, *(z - grid.cols));
+        if (row + 1 < grid.rows) look(*z, *(z + grid.cols));
+    });
     survey.level_share = pairs > 0 ? static_cast<double>(level) / static_cast<double>(pairs) : nan;
     survey.median_step_m = steps.empty() ? nan : quantile(std::move(steps), 0.5);
-}
-
-void look_for_lines(const Raster& raster, HeightSurvey& survey) {
-    const Grid& grid = raster.grid;
-    const std::ptrdiff_t cols = grid.cols;
-    Stripes across_rows(grid.rows), across_cols(grid.cols);
-    Repeats rows(grid.rows), columns(grid.cols);
-    Index looked_at = 0;
-    for (Index row = 1; row + 1 < grid.rows; row += row_step(grid)) {
-        ++looked_at;
-        const double* const z = raster.values.data() + std::size_t{row} * grid.cols;
-        for (std::ptrdiff_t col = 0; col < cols; ++col) {
-            across_rows.add(row, z[col] - 0.5 * (z[col - cols] + z[col + cols]));
-            rows.add(row, z[col], z[col - cols]);
-            if (col == 0) continue;
-            columns.add(static_cast<Index>(col), z[col], z[col - 1]);
-            if (col + 1 < cols) across_cols.add(static_cast<Index>(col), z[col] - 0.5 * (z[col - 1] + z[col + 1]));
-        }
-    }
-    survey.row_striping = across_rows.share(grid.cols);
-    survey.column_striping = across_cols.share(looked_at);
-    survey.repeated_rows = rows.share();
-    survey.repeated_columns = columns.share();
 }
 
 /// Whether the value stands on the outer edge of the raster: then the reader has warned of it.
 bool is_on_rim(const Raster& raster, double value) {
     const Grid& grid = raster.grid;
-    for (Index node = 0; node < grid.size(); ++node) {
-        const Index row = grid.row(node), col = grid.col(node);
-        const bool rim = row == 0 || col == 0 || row + 1 == grid.rows || col + 1 == grid.cols;
-        if (rim && raster.values[node] == value) return true;
+    const auto has = [&](Index row, Index col) { return raster.values[std::size_t{row} * grid.cols + col] == value; };
+    for (Index col = 0; col < grid.cols; ++col) {
+        if (has(0, col) || has(grid.rows - 1, col)) return true;
+    }
+    for (Index row = 0; row < grid.rows; ++row) {
+        if (has(row, 0) || has(row, grid.cols - 1)) return true;
     }
     return false;
 }
@@ -161,7 +258,7 @@ bool is_striped(double share, Index line_length) { return share > std::max(0.02,
 }  // namespace
 
 HeightSurvey survey_heights(const Raster& raster) {
-    HeightSurvey survey{.most_frequent_m = most_frequent(raster.values),
+    HeightSurvey survey{.most_frequent_m = most_frequent(raster),
                         .most_frequent_share = nan,
                         .zero_share = nan,
                         .level_share = nan,
@@ -172,7 +269,9 @@ HeightSurvey survey_heights(const Raster& raster) {
                         .repeated_columns = nan};
     count_values(raster.values, survey);
     count_steps(raster, survey);
-    look_for_lines(raster, survey);
+    measure_stripes(raster, survey);
+    survey.repeated_rows = repeated_rows(raster);
+    survey.repeated_columns = repeated_columns(raster);
     return survey;
 }
 

@@ -19,9 +19,12 @@ std::size_t cut_basins(const RasterMeasurement& m) {
     const ChannelStatistics& c = m.statistics.channels;
     const double from_m2 = std::isnan(c.threshold_area_m2) ? c.source_area_m2[0] : c.threshold_area_m2;
     if (std::isnan(from_m2)) return 0;
-    const auto trees = terrain::basins(m.terrain.graph, m.terrain.drainage_area_m2, m.terrain.complete, from_m2,
-                                       terrain::EdgeBasins::keep);
-    return static_cast<std::size_t>(std::ranges::count_if(trees, [](const auto& tree) { return !tree.complete; }));
+    std::size_t cut = 0;
+    for (std::size_t node = 0; node < m.directions.size(); ++node) {
+        const double area_m2 = m.terrain.drainage_area_m2[node];  // 0 without data
+        cut += m.directions[node] == no_flow && area_m2 > 0 && area_m2 >= from_m2 && !m.terrain.complete[node];
+    }
+    return cut;
 }
 
 }  // namespace

@@ -16,16 +16,17 @@ namespace thalweg::study {
 /// stripes, as of old photogrammetric profiles, raise it. Columns likewise. Rows and columns with under half their
 /// cells do not count.
 struct HeightSurvey {
-    double most_frequent_m;      ///< value, of a sample of the cells
+    double most_frequent_m;      ///< value, of a sample of the cells; the lowest of several
     double most_frequent_share;  ///< of the cells with data that have it
     double zero_share;           ///< of the cells with data at exactly 0
-    double level_share;          ///< of neighbours east–west those of one height, that value's apart
-    double median_step_m;        ///< between neighbours of different height
+    double level_share;          ///< of neighbours, in a sample of the cells, those of one height, that value's apart
+    double median_step_m;        ///< between neighbours of different height, in the same sample
     double row_striping, column_striping;
-    double repeated_rows, repeated_columns;  ///< share that equals the one before, constant ones apart
+    double repeated_rows, repeated_columns;  ///< share that equals the one beside, pairs of constant ones apart
 };
 
-/// Surveys all cells, or every so many rows of a raster of more than four million. Linear, one thread.
+/// Surveys all cells; where a sample is said, some 65 thousand of them, evenly spaced from the edges inwards. A raster
+/// turned or mirrored has the same survey, rows and columns changing places. Linear, one thread.
 HeightSurvey survey_heights(const Raster&);
 
 /// What of it the user should know, one sentence each; `vertical_quantum_m` as `channel::vertical_quantum` finds it.
