@@ -70,6 +70,21 @@ TEST_CASE("on any terrain receivers come before donors, every node with data onc
     }
 }
 
+TEST_CASE("planes that fall to any side are ordered, also where all is placed before the last nodes are looked at") {
+    for (const Index rows : {100U, 700U}) {  // one block and several
+        const Grid grid = plane_grid(rows, 200, 1, 1);
+        for (const auto& [east, south] : {std::pair{0, 1}, {0, -1}, {1, 0}, {-1, 0}, {1, 1}, {-1, -1}}) {
+            INFO(rows << " rows, rising by " << east << " east, " << south << " south");
+            std::vector<double> z(grid.size());
+            for (Index node = 0; node < grid.size(); ++node) {
+                z[node] = east * static_cast<double>(grid.col(node)) + south * static_cast<double>(grid.row(node));
+            }
+            const FlowDirections directions = route(grid, z, data_edge(grid, z));
+            check_order(grid, z, directions, downstream_first_order(grid, z, directions));
+        }
+    }
+}
+
 TEST_CASE("a river as long as the grid is ordered without recursion") {
     const Index cols = 3'000'000;
     const Grid grid = plane_grid(1, cols, 1, 1);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -90,9 +91,9 @@ class BlockWalk {
         }
     }
 
-    /// There is always room for one more, so that this needs no branch.
+    /// There is always room for one more, so that this needs no branch. (Signed: with all nodes placed it is place -1.)
     void push_if(bool wanted, Index node) {
-        queue_[free_ - 1] = node;
+        queue_[std::ptrdiff_t{free_} - 1] = node;
         free_ -= wanted;
     }
 
