@@ -9,6 +9,7 @@
 
 #include "support/flow_trees.hpp"
 #include "support/steady_landscape.hpp"
+#include "thalweg/core/parallel.hpp"
 
 using namespace thalweg;
 using namespace thalweg::channel;
@@ -260,4 +261,81 @@ TEST_CASE("Vertical noise of a metre or two leaves m within 0.02 and k within 10
             CHECK(std::abs(bias.k_at_reference) < 0.10);
         }
     }
+}
+
+TEST_CASE("A link is one point: its drop over its length, and the geometric mean of its areas, by hand") {
+    // 0 ← 1 ← 2 ← {3 ← 5, 4}: the outlet's link of two steps, one of two and one of a single step above the junction 2.
+    const FlowGraph graph = graph_of({none, 0, 1, 2, 2, 3}, 10);
+    const std::vector<double> area{9e5, 8e5, 2e5, 5e5, 1e5, 2e5}, height{0, 1, 4, 6, 4, 9};
+    const StreamNetwork network = stream_network(graph, std::vector<std::uint8_t>(6, 1), area, height);
+    REQUIRE(network.size() == 3);
+    const auto points = link_slopes(network, graph, area);
+    REQUIRE(points.size() == 2);  // the step from 4 to 2 does not fall
+    CHECK(points[0].slope == Approx(4 / 20.0));
+    CHECK(points[0].area_m2 == Approx(std::sqrt(8e5 * 2e5)));
+    CHECK(points[0].weight == 20);
+    CHECK(points[0].node == 1);
+    CHECK(points[1].slope == Approx(5 / 20.0));
+    CHECK(points[1].area_m2 == Approx(std::sqrt(5e5 * 2e5)));
+    CHECK(points[1].node == 3);
+}
+
+TEST_CASE("Bins of nodes are those of their points, in any number of blocks and for any number of threads") {
+    for (const Index side : {40u, 90u, 620u}) {
+        const Grid grid = plane_grid(side, side, 30, 30);
+        std::vector<double> height(grid.size());
+        std::vector<std::uint8_t> used(grid.size());
+        for (Index node = 0; node < grid.size(); ++node) {
+            height[node] =
+                std::floor(8 * uniform_at(side, 0, node)) / 4;  // quarters of a metre, so that some are level
+            used[node] = uniform_at(side, 1, node) < 0.9;
+        }
+        const support::RoutedDem dem = support::routed_dem(grid, height);
+        const auto points = node_slopes(dem.graph, dem.area_m2, dem.carved_m, used);
+        const auto expected = slope_area_bins(points);
+        const NodeSlopeBins found = node_slope_bins(dem.graph, dem.area_m2, dem.carved_m, used);
+        CHECK(found.looked_at - found.level == points.size());
+        CHECK(found.level > 0);
+        REQUIRE(found.bins.size() == expected.size());
+        for (std::size_t i = 0; i < expected.size(); ++i) {
+            CHECK(found.bins[i].count == expected[i].count);
+            CHECK(found.bins[i].area_m2 == Approx(expected[i].area_m2).epsilon(1e-10));
+            CHECK(found.bins[i].slope == Approx(expected[i].slope).epsilon(1e-10));
+            if (expected[i].count > 1) CHECK(found.bins[i].slope_se == Approx(expected[i].slope_se).epsilon(1e-8));
+        }
+        const ThreadLimit limit(1);
+        const NodeSlopeBins alone = node_slope_bins(dem.graph, dem.area_m2, dem.carved_m, used);
+        for (std::size_t i = 0; i < alone.bins.size(); ++i) CHECK(alone.bins[i].slope == found.bins[i].slope);
+    }
+}
+
+TEST_CASE("Nodes of a steady landscape have its law to rounding, links to the curvature along them") {
+    const Grid grid = plane_grid(160, 160, 90, 90);
+    for (const double theta : {0.3, 0.5, 0.7}) {
+        const support::SteadyLaw law{.theta = theta};
+        const support::RoutedDem dem = support::routed_dem(grid, support::steady_raster(grid, law, 7));
+        const double ks = law.slope(1);
+        const NodeSlopeBins nodes = node_slope_bins(dem.graph, dem.area_m2, dem.carved_m);
+        const SlopeArea by_nodes = fit_slope_area(nodes.bins);
+        CHECK(by_nodes.theta.value == Approx(theta).margin(1e-5));
+        CHECK(by_nodes.ks.value == Approx(ks).epsilon(1e-4));
+        const auto channels = channels_by_area(dem.area_m2, 2e5);
+        const StreamNetwork network = stream_network(dem.graph, channels, dem.area_m2, dem.carved_m);
+        const SlopeArea by_links = fit_slope_area(slope_area_bins(link_slopes(network, dem.graph, dem.area_m2)));
+        CHECK(std::abs(by_links.theta.value - theta) < 0.01);
+        const double at_reference = by_links.ks.value * std::pow(law.reference_area_m2, -by_links.theta.value);
+        CHECK(at_reference == Approx(law.slope_at_reference).epsilon(0.03));
+    }
+}
+
+TEST_CASE("The turnover is the steepest of the bins, and its range those that errors do not tell from it") {
+    const std::vector<SlopeAreaBin> bins{{1e3, 0.20, 0.01, 50}, {2e3, 0.29, 0.01, 50}, {4e3, 0.30, 0.01, 50},
+                                         {8e3, 0.28, 0.01, 50}, {2e4, 0.25, 0.01, 50}, {3e4, 0.90, 0.01, 4}};
+    const Turnover turnover = hillslope_turnover(bins);
+    CHECK(turnover.area_m2 == 4e3);
+    CHECK(turnover.range_m2[0] == 2e3);
+    CHECK(turnover.range_m2[1] == 8e3);  // 0.02 < 1.96·0.01·√2 = 0.0277 < 0.05
+    CHECK(std::isnan(hillslope_turnover(std::span(bins).first(3)).area_m2));
+    CHECK(std::isnan(hillslope_turnover(std::span(bins).subspan(2)).area_m2));
+    CHECK(std::isnan(hillslope_turnover({}).range_m2[0]));
 }

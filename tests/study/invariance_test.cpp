@@ -74,12 +74,13 @@ const Kind& kind_of(const std::string& path) {
 /// The powers of a steepness depend on its exponent: ks and ksn are S·A^θ, Hack's coefficient L·A^(−h).
 std::optional<Dimension> fitted_dimension(const Json& flat, const std::string& path) {
     const auto number = [&](const std::string& key) { return flat.contains(key) ? flat[key].get<double>() : 0.0; };
-    if (path == "/slope_area/ks") return Dimension{2 * number("/slope_area/theta") - 1, 1};
+    static const std::regex slope_area_ks("(/slope_area(_cells|_links)?)/ks");
+    std::smatch match;
+    if (std::regex_match(path, match, slope_area_ks)) return Dimension{2 * number(match[1].str() + "/theta") - 1, 1};
     if (path == "/hack/coefficient") return Dimension{1 - 2 * number("/hack/exponent"), 0};
     if (path == "/chi/ksn_median") return Dimension{2 * 0.45 - 1, 1};
     if (std::regex_match(path, std::regex("/basins/\\d+/ksn_.*"))) return Dimension{2 * 0.45 - 1, 1};
     static const std::regex basin_ks("(/basins/\\d+)/ks");
-    std::smatch match;
     if (std::regex_match(path, match, basin_ks)) return Dimension{2 * number(match[1].str() + "/theta") - 1, 1};
     return {};
 }

@@ -5,13 +5,15 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
-#include <numbers>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "support/drawing.hpp"
 #include "support/drawn_catchment.hpp"
+#include "support/steady_landscape.hpp"
 #include "support/temp_folder.hpp"
 #include "support/terrains.hpp"
+#include "thalweg/io/table_file.hpp"
 #include "thalweg/study/analyze.hpp"
 #include "thalweg/terrain/accumulate.hpp"
 #include "thalweg/terrain/d_infinity.hpp"
@@ -361,4 +363,39 @@ TEST_CASE("Another routing writes its own area and begins channels by it, and le
         CHECK(s["channels"]["cells"] != d8["channels"]["cells"]);
         CHECK(s["basins"][0]["area_m2"] == d8["basins"][0]["area_m2"]);
     }
+}
+
+TEST_CASE("Slope–area by cells looks at basins' cells that conditioning left alone, and its line at channels alone") {
+    const Grid grid = plane_grid(120, 120, 90, 90);
+    const support::SteadyLaw law{.theta = 0.45};
+    auto height = support::steady_raster(grid, law, 5);
+    for (double& each : height) each += 500;
+    MeasureOptions options = channels_from(20.5 * 8100);
+    options.edge_basins = terrain::EdgeBasins::keep;
+    const TempFolder temp;
+    const Json plain = analyzed(raster_of({"steady", grid, height}), options, temp / "a");
+    CHECK(plain["slope_area_cells"]["theta"].get<double>() == Approx(0.45).margin(1e-5));
+    CHECK(plain["slope_area_cells"]["ks"].get<double>() == Approx(law.slope(1)).epsilon(1e-4));
+    CHECK(plain["slope_area_cells"]["fitted_from_m2"] == 20.5 * 8100);
+    CHECK(plain["slope_area_links"]["theta"].get<double>() == Approx(0.45).margin(0.02));
+    CHECK(plain["slope_area_cells"]["level_share"] == 0);
+    CHECK(plain["slope_area_cells"]["turnover_area_m2"].is_null());  // steepest at the smallest area
+    CHECK(plain["notes"].dump().find("slope_area_cells") != std::string::npos);
+
+    // What stands under water has no slope of the ground.
+    auto pitted = height;
+    for (Index node = 0; node < grid.size(); ++node) {
+        if (uniform_at(1, 0, node) < 0.02) pitted[node] -= 40;
+    }
+    const Json filled = analyzed(raster_of({"pitted", grid, pitted}), options, temp / "b");
+    CHECK(filled["conditioning"]["cells_changed"].get<int>() > 10);
+    const auto cells = [](const Json& summary) {
+        int sum = 0;
+        for (const Json& bin : summary["slope_area_cells"]["bins"]) sum += bin["count"].get<int>();
+        return sum;
+    };
+    CHECK(cells(filled) < cells(plain));
+    const Table written = io::read_csv(temp / "a" / "slope_area_cells.csv");
+    CHECK(std::get<std::vector<double>>(written.columns[1].values).size() == plain["slope_area_cells"]["bins"].size());
+    CHECK(std::filesystem::exists(temp / "a" / "slope_area_links.csv"));
 }

@@ -47,8 +47,8 @@ Statistics drawn_statistics() {
     s.network_laws.pfafstetter = channel::pfafstetter_codes(s.network);
     s.chi.theta = 0;
     s.chi.reference_area_m2 = 1e6;
-    s.chi.profile = channel::channel_profile(graph, channel, support::upstream_counts(graph),
-                                             Doubles{0, 10, 15, 30, 70, 33, 36});
+    s.chi.profile =
+        channel::channel_profile(graph, channel, support::upstream_counts(graph), Doubles{0, 10, 15, 30, 70, 33, 36});
     s.chi.chi_m = channel::chi(s.chi.profile, 0, 1e6);
     s.chi.knickpoints = channel::knickpoints(s.chi.profile, s.chi.chi_m, 0, 1e6, 5);
     return s;
@@ -56,7 +56,8 @@ Statistics drawn_statistics() {
 
 }  // namespace
 
-TEST_CASE("The table of knickpoints holds the place where the main stream is convex, with the steepness on both sides") {
+TEST_CASE(
+    "The table of knickpoints holds the place where the main stream is convex, with the steepness on both sides") {
     // The main stream 0, 10, 30, 33, 36 at distances 0, 5, 10, 15, 20: 30 stands 12 above the line from 0 to 36.
     const Table points = knickpoints_table(drawn_statistics(), drawn_position);
     CHECK(points.kind == GeometryKind::point);
@@ -194,7 +195,7 @@ TEST_CASE("Orders, Horton's ratios, side tributaries and widths each have a tidy
 }
 
 TEST_CASE("The curves are written with every number in its own column") {
-    const Table bins = slope_area_table({{.area_m2 = 1e4, .slope = 0.1, .slope_se = 0.02, .count = 7}});
+    const Table bins = slope_area_table("slope_area", {{.area_m2 = 1e4, .slope = 0.1, .slope_se = 0.02, .count = 7}});
     CHECK(column<Doubles>(bins, "area_m2") == Doubles{1e4});
     CHECK(column<Doubles>(bins, "slope") == Doubles{0.1});
     CHECK(column<Doubles>(bins, "slope_se") == Doubles{0.02});

@@ -163,7 +163,7 @@ Json fit_json(const infer::SlopeAreaFit& f, const FitOptions& options, const Tar
 }
 
 Table curve_table(const infer::SlopeAreaFit& f) {
-    Table table = slope_area_table(f.bins);
+    Table table = slope_area_table("slope_area", f.bins);
     table.columns.push_back({"fitted_slope", f.fitted_slope});
     return table;
 }

@@ -122,6 +122,44 @@ NetworkStatistics network_statistics(const RoutedTerrain& terrain, const Statist
     return n;
 }
 
+double share(std::size_t part, std::size_t whole) {
+    return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : nan;
+}
+
+/// 1 for nodes in the basins whose step down is as the ground has it.
+std::vector<std::uint8_t> natural_steps(const RoutedTerrain& terrain, std::span<const double> ground_m,
+                                        std::span<const Index> basin_of) {
+    std::vector<std::uint8_t> natural(basin_of.size());
+    const auto unchanged = [&](Index node) { return terrain.elevation_m[node] == ground_m[node]; };
+    for (Index node = 0; node < natural.size(); ++node) {
+        const Index receiver = terrain.graph.receiver[node];
+        natural[node] = basin_of[node] != none && receiver != none && unchanged(node) && unchanged(receiver);
+    }
+    return natural;
+}
+
+SlopeAreaByNodes slope_area_by_nodes(const RoutedTerrain& terrain, std::span<const double> ground_m,
+                                     std::span<const Index> basin_of, double channels_from_m2) {
+    const auto& area = terrain.divided_area_m2.empty() ? terrain.drainage_area_m2 : terrain.divided_area_m2;
+    channel::NodeSlopeBins nodes =
+        channel::node_slope_bins(terrain.graph, area, terrain.elevation_m, natural_steps(terrain, ground_m, basin_of));
+    std::vector<channel::SlopeAreaBin> of_channels;
+    std::ranges::copy_if(nodes.bins, std::back_inserter(of_channels),
+                         [&](const auto& bin) { return bin.area_m2 >= channels_from_m2; });
+    SlopeAreaByNodes s{.law = channel::fit_slope_area(std::move(of_channels)),
+                       .fitted_from_m2 = channels_from_m2,
+                       .level_share = share(nodes.level, nodes.looked_at),
+                       .turnover = channel::hillslope_turnover(nodes.bins)};
+    s.law.bins = std::move(nodes.bins);
+    return s;
+}
+
+SlopeAreaByLinks slope_area_by_links(const RoutedTerrain& terrain, const channel::StreamNetwork& network) {
+    const auto points = channel::link_slopes(network, terrain.graph, terrain.drainage_area_m2);
+    return {.law = channel::fit_slope_area(channel::slope_area_bins(points)),
+            .level_share = share(network.size() - points.size(), network.size())};
+}
+
 /// Relief of the largest basin of the statistics, or of everything where there is none: what 2.5 % are taken of.
 double reference_relief(const RasterMeasurement& m, std::span<const double> ground_m, double threshold_m2,
                         const MeasureOptions& options) {
@@ -227,8 +265,10 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
                                            : std::numeric_limits<double>::quiet_NaN();
     s.strahler = channel::strahler_statistics(s.network);
     s.horton = channel::horton_ratios(s.strahler);
-    s.network_laws = network_statistics(terrain, s, options.heads ? s.channels.source_area_m2[0] : threshold,
-                                        basins.empty() ? 0 : basins.front().area_m2);
+    const double channels_from = options.heads ? s.channels.source_area_m2[0] : threshold;
+    s.network_laws = network_statistics(terrain, s, channels_from, basins.empty() ? 0 : basins.front().area_m2);
+    s.slope_area_nodes = slope_area_by_nodes(terrain, ground_m, s.basin_of, channels_from);
+    s.slope_area_links = slope_area_by_links(terrain, s.network);
     s.slope_area = channel::fit_slope_area(channel::slope_area_bins(slopes));
     s.slope_area_points = std::move(slopes);
     s.chi = std::move(chi);

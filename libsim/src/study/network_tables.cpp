@@ -77,7 +77,9 @@ void write_statistics(const Statistics& s, const PositionOf& position, const std
           strahler_table(s.strahler), horton_table(s.horton), tokunaga_table(s.network_laws.tokunaga),
           width_function_table(s.network_laws.width), link_values(s), with_coordinates(junctions_table(s, position)),
           with_coordinates(knickpoints_table(s, position)), chi_table(s, position),
-          slope_area_table(s.slope_area.bins)}) {
+          slope_area_table("slope_area", s.slope_area.bins),
+          slope_area_table("slope_area_cells", s.slope_area_nodes.law.bins),
+          slope_area_table("slope_area_links", s.slope_area_links.law.bins)}) {
         io::write_csv(folder / (table.name + ".csv"), table);
     }
 }

@@ -109,6 +109,21 @@ Json slope_area_json(const channel::SlopeArea& s) {
             {"bins", bins}};
 }
 
+Json nodes_json(const SlopeAreaByNodes& s) {
+    Json json = slope_area_json(s.law);
+    json["fitted_from_m2"] = number(s.fitted_from_m2);
+    json["level_share"] = number(s.level_share);
+    json["turnover_area_m2"] = number(s.turnover.area_m2);
+    json["turnover_range_m2"] = numbers(s.turnover.range_m2);
+    return json;
+}
+
+Json links_json(const SlopeAreaByLinks& s) {
+    Json json = slope_area_json(s.law);
+    json["level_share"] = number(s.level_share);
+    return json;
+}
+
 Json value_json(double value) { return number(value); }
 Json value_json(std::int64_t value) { return value; }
 Json value_json(const std::string& value) { return value; }
@@ -227,6 +242,14 @@ Json terrain_json(const TerrainInput& input, const Statistics& s, const Position
                  {"strahler", strahler_json(s.strahler)},       {"horton", horton_json(s.horton)}};
     summary.update(network_json(s.network_laws, notes));
     summary["slope_area"] = slope_area_json(s.slope_area);
+    summary["slope_area_cells"] = nodes_json(s.slope_area_nodes);
+    explain_null("slope_area_cells", summary["slope_area_cells"],
+                 "a line needs three bins of channels; the turnover is seen where slopes first rise and then fall with "
+                 "area; a bin of one cell has no standard error",
+                 notes);
+    summary["slope_area_links"] = links_json(s.slope_area_links);
+    explain_null("slope_area_links", summary["slope_area_links"],
+                 "a line needs three bins of links that fall; a bin of one link has no standard error", notes);
     summary["chi"] = chi_json(s.chi, notes);
     summary["basins"] = basins_json(s, position);
     if (!s.basins.empty()) {

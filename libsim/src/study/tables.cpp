@@ -126,8 +126,8 @@ Table hypsometry_table(const terrain::Hypsometry& h) {
             .geometry = {}};
 }
 
-Table slope_area_table(const std::vector<channel::SlopeAreaBin>& bins) {
-    return {.name = "slope_area",
+Table slope_area_table(const char* name, const std::vector<channel::SlopeAreaBin>& bins) {
+    return {.name = name,
             .columns = {{"area_m2", column_of(bins, [](const auto& bin) { return bin.area_m2; })},
                         {"slope", column_of(bins, [](const auto& bin) { return bin.slope; })},
                         {"slope_se", column_of(bins, [](const auto& bin) { return bin.slope_se; })},

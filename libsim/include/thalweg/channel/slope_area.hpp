@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
+#include "thalweg/channel/network.hpp"
 #include "thalweg/core/statistics.hpp"
 #include "thalweg/terrain/graph.hpp"
 
@@ -61,8 +63,34 @@ std::vector<SlopeAreaPoint> fixed_drop_segments(const terrain::FlowGraph&, std::
 std::vector<SlopeAreaPoint> node_slopes(const terrain::FlowGraph&, std::span<const double> drainage_area_m2,
                                         std::span<const double> elevation_m, std::span<const std::uint8_t> used = {});
 
+/// One point per link: its drop over its length, the geometric mean of the drainage area along it (each step with its
+/// upper node's area, by its length, as in a segment) and its length as weight; `node` is the link's last above its
+/// end. Links that do not fall are left out.
+std::vector<SlopeAreaPoint> link_slopes(const StreamNetwork&, const terrain::FlowGraph&,
+                                        std::span<const double> drainage_area_m2);
+
 /// Ten bins per decade of area, averaged in the logarithm.
 std::vector<SlopeAreaBin> slope_area_bins(std::span<const SlopeAreaPoint>, int bins_per_decade = 10);
+
+/// The bins of node_slopes where these would be too many to hold, hillslopes and all.
+struct NodeSlopeBins {
+    std::vector<SlopeAreaBin> bins;
+    std::size_t looked_at = 0;  ///< nodes in use with a receiver
+    std::size_t level = 0;      ///< of them, those that do not fall, which no bin can hold
+};
+
+/// Linear, on several threads, the same bits for any number of them.
+NodeSlopeBins node_slope_bins(const terrain::FlowGraph&, std::span<const double> drainage_area_m2,
+                              std::span<const double> elevation_m, std::span<const std::uint8_t> used = {});
+
+/// Where hillslopes, which steepen downstream, give way to channels, which flatten: the bin of largest mean slope, of
+/// bins of at least five points. NaN where that is the first or the last one, so that one side is not seen.
+struct Turnover {
+    double area_m2;
+    std::array<double, 2>
+        range_m2;  ///< of the bins around it whose slope is less by under 1.96 errors of the difference
+};
+Turnover hillslope_turnover(std::span<const SlopeAreaBin>);
 
 /// Standard error of each bin's mean ln slope, for weighing. A handful of points tells its own scatter badly, and a bin
 /// whose points agree by chance would outweigh all others (the 95 % interval of a fit then covers 80 %); so the

@@ -149,6 +149,21 @@ struct ChiStatistics {
     std::vector<channel::Knickpoint> knickpoints;
 };
 
+/// Slope–area by single nodes, hillslopes and all: those in the basins whose height, and that of their receiver,
+/// conditioning has left alone.
+struct SlopeAreaByNodes {
+    channel::SlopeArea law;  ///< all bins; the line is that of the ones from `fitted_from_m2` on
+    double fitted_from_m2;   ///< where channels begin
+    double level_share;      ///< of the nodes looked at, without fall
+    channel::Turnover turnover;
+};
+
+/// Slope–area by links.
+struct SlopeAreaByLinks {
+    channel::SlopeArea law;
+    double level_share;  ///< of the links, without fall
+};
+
 /// Every statistic of one terrain.
 struct Statistics {
     terrain::Hypsometry hypsometry;
@@ -158,6 +173,8 @@ struct Statistics {
     NetworkStatistics network_laws;
     channel::SlopeArea slope_area;
     std::vector<channel::SlopeAreaPoint> slope_area_points;
+    SlopeAreaByNodes slope_area_nodes;
+    SlopeAreaByLinks slope_area_links;
     ChiStatistics chi;
     std::vector<BasinStatistics> basins;
     channel::StreamNetwork network;
@@ -210,7 +227,7 @@ struct RasterMeasurement {
     ConditioningReport conditioning;
     Index valid_cells = 0;
     double area_m2 = 0;
-    double segment_drop_m = 0;               ///< of the slope–area segments
+    double segment_drop_m = 0;  ///< of the slope–area segments
     double vertical_quantum_m = 0;
     ChannelEvidence channel_evidence;
     Statistics statistics;

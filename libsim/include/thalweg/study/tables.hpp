@@ -53,9 +53,9 @@ Table chi_table(const Statistics&, const PositionOf&);
 /// Writes every table of the statistics as a CSV of its name.
 void write_statistics(const Statistics&, const PositionOf&, const std::filesystem::path& folder);
 
-/// hypsometry.csv, slope_area.csv (the bins) and slope_area_points.csv.
+/// hypsometry.csv; slope_area.csv, slope_area_cells.csv and slope_area_links.csv (bins); slope_area_points.csv.
 Table hypsometry_table(const terrain::Hypsometry&);
-Table slope_area_table(const std::vector<channel::SlopeAreaBin>&);
+Table slope_area_table(const char* name, const std::vector<channel::SlopeAreaBin>&);
 Table slope_area_points_table(const std::vector<channel::SlopeAreaPoint>&);
 
 }  // namespace thalweg::study
