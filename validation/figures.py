@@ -46,6 +46,7 @@ FIGURES = {
     r"memory_order": (ORDER, "Numbers between neighbours, nine in ten: along a Hilbert curve", 0),
     r"solids": (TOLERANCE, "Closed solids: volume in another program over ours, minus 1", 1e-8),
     r"recovery_with_deposition": (TOLERANCE, "Blind fits with G = 0.5, 1, 2: k·A0^m off by", 0.1),
+    r"ellipsoid_(domes|valleys|catchments)": (TOLERANCE, "Degrees and an equal-area plane, {0}: off by, over its bound", 1),
     r"knickpoint_places": (SPREAD, "Knickpoints' χ over that of the wave", 1),
 }
 
