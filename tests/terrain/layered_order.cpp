@@ -6,6 +6,7 @@
 #include "support/terrain_oracles.hpp"
 #include "support/terrains.hpp"
 #include "thalweg/core/parallel.hpp"
+#include "thalweg/core/random.hpp"
 #include "thalweg/terrain/accumulate.hpp"
 #include "thalweg/terrain/flats.hpp"
 #include "thalweg/terrain/lakes.hpp"
@@ -153,6 +154,82 @@ TEST_CASE("A flat that crosses the borders of blocks is resolved as one") {
     for (Index node = start; directions[node] != no_flow; node = grid.neighbor(node, directions[node])) ++steps;
     CHECK(steps >= rows - 3);
     CHECK(steps < rows + cols);
+}
+
+namespace {
+
+/// Steps from the seeds (0 there) through stuck cells; far above any count where there is no way.
+std::vector<int> steps_from(const Grid& grid, const std::vector<char>& stuck, std::vector<Index> reached) {
+    std::vector<int> steps(grid.size(), 1'000'000'000);
+    for (const Index seed : reached) steps[seed] = 0;
+    for (std::size_t next = 0; next < reached.size(); ++next) {
+        grid.neighbors(reached[next], [&](Index other, double, Slot) {
+            if (!stuck[other] || steps[other] <= steps[reached[next]] + 1) return;
+            steps[other] = steps[reached[next]] + 1;
+            reached.push_back(other);
+        });
+    }
+    return steps;
+}
+
+/// Whether every stuck cell flows to the lowest neighbour of its height on Barnes' surface, and those without a way out
+/// nowhere.
+bool flows_as_gradients_say(const Grid& grid, const std::vector<double>& z, const std::vector<Boundary>& boundary,
+                            const FlowDirections& routed, const FlowDirections& directions) {
+    std::vector<char> stuck(grid.size());
+    std::vector<Index> at_exit, at_rim;
+    for (Index node = 0; node < grid.size(); ++node) {
+        stuck[node] = routed[node] == no_flow && boundary[node] == Boundary::interior && !std::isnan(z[node]);
+    }
+    for (Index node = 0; node < grid.size(); ++node) {
+        bool exit = false, rim = false;
+        grid.neighbors(node, [&](Index other, double, Slot) {
+            exit = exit || (z[other] == z[node] && !stuck[other]);
+            rim = rim || z[other] > z[node];
+        });
+        if (stuck[node] && exit) at_exit.push_back(node);
+        if (stuck[node] && rim) at_rim.push_back(node);
+    }
+    const std::vector<int> to_exit = steps_from(grid, stuck, at_exit);
+    const std::vector<int> from_rim = steps_from(grid, stuck, at_rim);
+    const auto surface = [&](Index node) {
+        if (!stuck[node]) return std::int64_t{-1'000'000'000};
+        return 2 * std::int64_t{to_exit[node]} - (from_rim[node] < 1'000'000'000 ? from_rim[node] : -1);
+    };
+    bool right = true;
+    for (Index node = 0; node < grid.size(); ++node) {
+        if (!stuck[node]) continue;
+        right = right && (directions[node] != no_flow) == (to_exit[node] < 1'000'000'000);
+        if (directions[node] == no_flow) continue;
+        const Index chosen = grid.neighbor(node, directions[node]);
+        grid.neighbors(node, [&](Index other, double, Slot) {
+            right = right && (z[other] != z[node] || surface(chosen) <= surface(other));
+        });
+        right = right && z[chosen] == z[node];
+    }
+    return right;
+}
+
+}  // namespace
+
+TEST_CASE("Flats whose arms meet beyond the border of a block are resolved as one") {
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        // At this share of low cells flats are long and branch often; a few ways out.
+        const Grid grid = plane_grid(500, 400, 1, 1);
+        Random random(seed, 77);
+        std::vector<double> z(grid.size());
+        std::vector<Boundary> boundary(grid.size(), Boundary::interior);
+        for (double& height : z) height = random.uniform() < 0.38 + 0.02 * static_cast<double>(seed) ? 1 : 2;
+        for (Boundary& b : boundary) {
+            if (random.uniform() < 0.002) b = Boundary::base_level;
+        }
+        const FlowDirections routed = route(grid, z, boundary);
+        FlowDirections directions = routed;
+        resolve_flats(grid, z, boundary, directions);
+        CHECK(flows_as_gradients_say(grid, z, boundary, routed, directions));
+        const FlowGraph graph = flow_graph(grid, z, directions);
+        CHECK(graph.order.size() == grid.size());  // nothing goes round in circles
+    }
 }
 
 TEST_CASE("A single river of a million cells needs no recursion: straight, and winding through a square") {

@@ -208,6 +208,16 @@ Index resolve(Flats& flats, Flat& flat, FlowDirections& directions) {
 
 bool begins_flat(const Flats& flats, Index cell) { return (flats.state[cell] & (stuck | collected)) == stuck; }
 
+/// A flat is often cut by the strip's border into arms that meet beyond it. What lies beyond is forgotten again, so
+/// that the next arm finds it too: taken for a flat of its own, it would be resolved with half of its ways out unknown.
+void put_off_flat(const Flat& flat, Index first, Index last, Flats& flats, std::vector<Index>& put_off) {
+    for (std::size_t i = 0; i < flat.cells.size(); ++i) {
+        const Index cell = flat.cells[i];
+        put_off.push_back(cell);
+        if (cell - first >= last - first) flats.state[cell] &= static_cast<std::uint8_t>(~collected);
+    }
+}
+
 /// Flats within a strip of rows. The strip's outermost rows belong to no flat here if there are rows beyond, so that
 /// no other strip's cells are touched; flats that reach them are put off.
 Index resolve_in_strip(const Grid& grid, Index first_row, Index last_row, Flats& flats, FlowDirections& directions,
@@ -221,7 +231,7 @@ Index resolve_in_strip(const Grid& grid, Index first_row, Index last_row, Flats&
         if (collect(flats, start, first, last, flat)) {
             resolved += resolve(flats, flat, directions);
         } else {
-            for (std::size_t i = 0; i < flat.cells.size(); ++i) put_off.push_back(flat.cells[i]);
+            put_off_flat(flat, first, last, flats, put_off);
         }
     }
     return resolved;
