@@ -1,19 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "grow/growing_tree.hpp"
 
 namespace thalweg::grow {
 namespace {
 
+constexpr std::size_t looked_ahead = 16;  // links
+
 /// The links in the order of their new numbers: along a stream from its mouth, then the tributaries met on the way.
 std::vector<Index> downstream_first(const GrowingTree& tree) {
     std::vector<Index> order;
+    order.reserve(tree.links.size());
     std::vector<Index> waiting{0};
     while (!waiting.empty()) {
         const Index mouth = waiting.back();
         waiting.pop_back();
         for (Index link = mouth; link != none; link = tree.links[link].upstream[0]) {
             order.push_back(link);
-            if (tree.links[link].upstream[1] != none) waiting.push_back(tree.links[link].upstream[1]);
+            const Index tributary = tree.links[link].upstream[1];
+            if (tributary == none) continue;
+            __builtin_prefetch(&tree.links[tributary]);
+            waiting.push_back(tributary);
         }
     }
     return order;
@@ -33,6 +41,8 @@ std::vector<Index> number_vertices(const Subdivision& basin) {
 }
 
 void copy_plane(const Subdivision& basin, const std::vector<Index>& number, Network& network) {
+    network.vertices.reserve(basin.vertices());
+    network.edges.reserve(basin.half_edges() / 2);
     for (Index vertex = 0; vertex < basin.vertices(); ++vertex) {
         if (number[vertex] != none) network.vertices.push_back(basin.point(vertex));
     }
@@ -61,6 +71,19 @@ void add_magnitudes(Network& network) {
     }
 }
 
+void reserve_links(Index links, Index half_edges, Network& network) {
+    network.downstream.reserve(links);
+    network.upstream.reserve(links);
+    network.lower.reserve(links);
+    network.upper.reserve(links);
+    network.stream.reserve(links);
+    network.length_m.reserve(links);
+    network.sidewall_slope.reserve(links);
+    network.polygon_offset.reserve(2 * std::size_t{links} + 1);
+    network.polygon_area_m2.reserve(2 * std::size_t{links});
+    network.polygon_vertices.reserve(half_edges);
+}
+
 }  // namespace
 
 Network finished(const GrowingTree& tree, const Point& origin) {
@@ -72,9 +95,13 @@ Network finished(const GrowingTree& tree, const Point& origin) {
     const auto new_name = [&](Index link) { return link == none ? none : renamed[link]; };
     const std::vector<Index> number = number_vertices(tree.basin);
     copy_plane(tree.basin, number, network);
+    reserve_links(static_cast<Index>(order.size()), tree.basin.half_edges(), network);
     network.polygon_offset.push_back(0);
-    for (const Index old : order) {
-        const GrowingLink& link = tree.links[old];
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        if (i % looked_ahead == 0) {
+            fetch_ahead(tree, std::span(order).subspan(i, std::min(looked_ahead, order.size() - i)));
+        }
+        const GrowingLink& link = tree.links[order[i]];
         network.downstream.push_back(new_name(link.downstream));
         network.upstream.push_back({new_name(link.upstream[0]), new_name(link.upstream[1])});
         network.lower.push_back(number[tree.basin.origin(link.edge)]);
@@ -86,6 +113,7 @@ Network finished(const GrowingTree& tree, const Point& origin) {
         copy_polygon(tree.basin, number, link.edge ^ 1, network);
     }
     add_magnitudes(network);
+    network.junctions.reserve(tree.junctions.size());
     for (Junction junction : tree.junctions) {
         junction.tributary = renamed[junction.tributary];
         junction.downstream = network.downstream[junction.tributary];

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <queue>
 #include <vector>
 
+#include "grow/candidates.hpp"
 #include "grow/growing_tree.hpp"
 #include "grow/junction.hpp"
 #include "grow/plane.hpp"
@@ -28,6 +28,9 @@ constexpr double least_width_of_side = 0.5;
 constexpr double shortest_tributary = 0.5;  // of the shortest link that is split
 constexpr double density_met = 0.01;        // so much length may be missing: under 1 % in a basin of one C²
 
+constexpr Index looked_ahead = 16;     // candidates
+constexpr Index fits_in_cache = 5000;  // links: 300 bytes each
+
 constexpr Index draws_per_step = 16;
 constexpr Index tries_per_side = 4;
 
@@ -41,14 +44,15 @@ double drawn_share(double mean, double delta, double uniform) {
     return std::clamp(mean + (2 * uniform - 1) * delta, 0.05, 0.95);
 }
 
-/// A link that may grow, with the excess it had when it was entered.
-struct Candidate {
-    double excess;
-    Index link;
-    bool operator<(const Candidate& other) const {
-        return excess != other.excess ? excess < other.excess : link > other.link;
-    }
-};
+/// Room for what usually grows in a basin of so many C²: a network that outgrows it takes more.
+void reserve(GrowingTree& tree, double squares) {
+    const double links = std::min(3 * squares, 4e6);  // a gigabyte, of which only what is used is ever taken
+    tree.links.reserve(static_cast<std::size_t>(links));
+    tree.streams.reserve(static_cast<std::size_t>(links / 2));
+    tree.junctions.reserve(static_cast<std::size_t>(links / 2));
+    tree.sources.reserve(static_cast<Index>(links / 2));
+    tree.basin.reserve(static_cast<Index>(5 * links), static_cast<Index>(4 * links));
+}
 
 class Grower {
   public:
@@ -62,6 +66,7 @@ class Grower {
     double missing_length() const;
     void enter(Index link);
     bool take_candidate(Index& link);
+    void look_ahead() const;
     bool density_reached() const;
     bool ease_rules();
     void lengthen(Index link);
@@ -77,9 +82,10 @@ class Grower {
     const double wanted_length_;
     const double link_limit_;
     double shortest_split_;  ///< m
-    std::priority_queue<Candidate> candidates_;
+    Candidates candidates_;
     std::vector<std::uint8_t> is_refused_;
     std::uint64_t step_ = 0;
+    std::uint64_t taken_ = 0;
     Index lengthened_ = 0;
     Index refused_ = 0;
     Index last_resorts_ = 0;
@@ -91,7 +97,9 @@ Grower::Grower(GrowingTree tree, const Dials& dials, double basin_area)
       c_(dials.channel_maintenance_m),
       wanted_length_(basin_area / c_),
       link_limit_(std::min(1000 + 400 * basin_area / (c_ * c_), 4e8)),
-      shortest_split_(shortest_split_link * c_) {
+      shortest_split_(shortest_split_link * c_),
+      candidates_(basin_area) {
+    reserve(tree_, basin_area / (c_ * c_));
     tree_.links[0].sidewall_slope = drawn_sidewalls(0);
     enter(0);
 }
@@ -122,13 +130,21 @@ void Grower::enter(Index link) {
 
 /// The link with the largest excess. Entries of links that have changed since are passed over: each change enters anew.
 bool Grower::take_candidate(Index& link) {
-    while (!candidates_.empty()) {
-        const Candidate top = candidates_.top();
-        candidates_.pop();
+    Candidate top{};
+    while (candidates_.pop(top)) {
+        if (++taken_ % looked_ahead == 0) look_ahead();
         link = top.link;
         if (top.excess == excess(link) && !is_refused_[link]) return true;
     }
     return false;
+}
+
+void Grower::look_ahead() const {
+    if (tree_.links.size() < fits_in_cache) return;
+    std::array<Index, looked_ahead> links{};
+    Index count = 0;
+    for (const Candidate& candidate : candidates_.upcoming(looked_ahead)) links[count++] = candidate.link;
+    fetch_ahead(tree_, std::span(links).first(count));
 }
 
 bool Grower::density_reached() const { return missing_length() < density_met * c_; }

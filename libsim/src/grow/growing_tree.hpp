@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "grow/source_order.hpp"
@@ -43,6 +44,10 @@ struct GrowingTree {
         return sources.count(links[link].mark, SourceOrder::source(links[link].stream));
     }
 };
+
+/// Brings polygons, streams and marks of some links into the cache, waiting for all at once instead of for one after
+/// another. Changes nothing.
+void fetch_ahead(const GrowingTree&, std::span<const Index> links);
 
 /// Numbers everything from the outlet up and leaves out what is no longer used.
 Network finished(const GrowingTree&, const Point& origin);

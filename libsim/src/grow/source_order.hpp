@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include <cstdint>
+#include <array>
 #include <vector>
 
 #include "thalweg/core/index.hpp"
@@ -11,8 +11,9 @@ namespace thalweg::grow {
 /// The sources in an order in which those upstream of any link stand together, so that a link's magnitude is a
 /// difference of two ranks; walking to the outlet at every junction would cost N^1.5.
 ///
-/// The row of a stream is: its opening mark, the rows of its tributaries from the mouth up, its source. A tree search
-/// structure with random priorities (treap; Seidel & Aragon 1996) in flat arrays: log N per insertion and rank.
+/// The row of a stream is: its opening mark, the rows of its tributaries from the mouth up, its source. The marks lie
+/// in blocks, these in blocks of blocks and so on, each member with the number of sources in it (a B-tree with counts;
+/// Bayer & McCreight 1972): log N per insertion and rank, with few places in memory on the way.
 class SourceOrder {
   public:
     /// The trunk alone.
@@ -28,18 +29,37 @@ class SourceOrder {
     /// Number of sources behind `mark`, up to and with the last one, `source`.
     Index count(Index mark, Index source) const { return rank(source) - rank(mark); }
 
-  private:
-    void insert(Index behind);
-    void rotate_up(Index mark);
-    Index rank(Index mark) const;  ///< number of sources up to and with this mark
+    void reserve(Index streams);
 
-    struct Node {
-        Index left, right, parent;
-        Index sources;  ///< in the subtree
+    /// Asks memory for a mark, then for its block, then for the block's own, without waiting.
+    void ask_for(Index mark) const { __builtin_prefetch(&block_of_[mark]); }
+    void ask_for_block(Index mark) const { ask_for_lines(block_of_[mark]); }
+    void ask_for_block_above(Index mark) const {
+        const Index above = blocks_[block_of_[mark]].parent;
+        if (above != none) ask_for_lines(above);
+    }
+
+  private:
+    static constexpr Index most_members = 32;
+
+    struct Block {
+        Index parent = none;  ///< block
+        Index size = 0;
+        bool of_marks = true;  ///< and not of blocks
+        std::array<Index, most_members> member;
+        std::array<Index, most_members> sources;  ///< in each member
     };
 
-    std::vector<Node> nodes_;  ///< per mark
-    std::vector<std::uint64_t> priority_;
+    void insert(Index behind);
+    void make_room(Index block);
+    void split(Index block);
+    void put(Index block, Index position, Index member, Index sources);
+    Index position(Index block, Index member) const;
+    Index rank(Index mark) const;  ///< number of sources up to and with this mark
+    void ask_for_lines(Index block) const;
+
+    std::vector<Block> blocks_;
+    std::vector<Index> block_of_;  ///< per mark
 };
 
 }  // namespace thalweg::grow

@@ -18,6 +18,11 @@ Subdivision::Subdivision(const Polygon& outline) : points_(outline) {
     }
 }
 
+void Subdivision::reserve(Index edges, Index vertices) {
+    sides_.reserve(2 * std::size_t{edges});
+    points_.reserve(vertices);
+}
+
 Index Subdivision::add_pair(Index from, Index to, EdgeKind kind) {
     const Index half_edge = half_edges();
     sides_.push_back({from, none, none, kind});

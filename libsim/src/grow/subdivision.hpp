@@ -45,6 +45,16 @@ class Subdivision {
     /// Area of the half-edge's polygon, m².
     double area(Index half_edge) const;
 
+    void reserve(Index edges, Index vertices);
+
+    /// Asks memory for a half-edge, or for what lies around it, without waiting.
+    void ask_for(Index half_edge) const { __builtin_prefetch(&sides_[half_edge]); }
+    void ask_for_surroundings(Index half_edge) const {
+        const HalfEdge& side = sides_[half_edge];
+        __builtin_prefetch(&points_[side.origin]);
+        __builtin_prefetch(&sides_[sides_[half_edge ^ 1].previous]);
+    }
+
   private:
     /// What a walk around a polygon needs, both directions of an edge in one cache line.
     struct HalfEdge {
