@@ -81,6 +81,54 @@ TEST_CASE("Every divide is the ridge of two valley sides, the outline of one, an
     }
 }
 
+TEST_CASE("Every junction's three divides are found where they were drawn") {
+    Dials dials;
+    dials.divides = Divides::shares;
+    dials.divide_across.mean = 0.6;
+    dials.divide_below.mean = 0.3;
+    dials.divide_above.mean = 0.45;
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        const Growth growth = grown(seed, dials);
+        const Network& network = growth.network;
+        const auto divides = junction_divides(network);
+        CHECK(divides.size() == 3 * network.junctions.size());
+        if (growth.last_resorts > 0) continue;  // links have turned: streams are no longer told by their direction
+        const auto m = growth_measures(network, elevations(network, dials.flint, 100)).divides;
+        CHECK(m.across.share.mean.value == Approx(0.6).epsilon(1e-6));
+        CHECK(m.below.share.mean.value == Approx(0.3).epsilon(1e-6));
+        CHECK(m.above.share.mean.value == Approx(0.45).epsilon(1e-6));
+        CHECK(m.above.share.delta.value < 1e-6);
+        CHECK(m.across.sector_mean_rad == Approx(3.14159265358979));
+        CHECK(m.across.mean_rad == Approx(0.6 * 3.14159265358979));
+    }
+}
+
+TEST_CASE("Drawn shares of divides have the mean and spread that was asked for") {
+    Dials dials;
+    dials.divides = Divides::shares;
+    dials.divide_across = {.mean = 0.55, .delta = 0.1};
+    dials.divide_below = {.mean = 0.35, .delta = 0.2};
+    dials.divide_above = {.mean = 0.5, .delta = 0.3};
+    std::array<std::array<double, 2>, 3> sum{};
+    int networks = 0;
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+        const Growth growth = grown(seed, dials);
+        if (growth.last_resorts > 0) continue;
+        ++networks;
+        const auto m = growth_measures(growth.network, elevations(growth.network, dials.flint, 100)).divides;
+        for (std::size_t i = 0; const auto* divide : {&m.across, &m.below, &m.above}) {
+            sum[i][0] += divide->share.mean.value;
+            sum[i++][1] += divide->share.delta.value;
+        }
+    }
+    REQUIRE(networks >= 10);
+    for (std::size_t i = 0; const auto* dial : {&dials.divide_across, &dials.divide_below, &dials.divide_above}) {
+        INFO(i);
+        CHECK(sum[i][0] / networks == Approx(dial->mean).margin(0.01));
+        CHECK(sum[i++][1] / networks == Approx(dial->delta).margin(0.02));
+    }
+}
+
 TEST_CASE("A ditch through a tray has the slopes that its corners say") {
     // One link along the middle of a long basin, level, with sides of 30° to the east and 45° to the west that reach
     // the outline at their full height: along the two long sides the slope is the tangent.

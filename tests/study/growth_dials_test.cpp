@@ -32,6 +32,10 @@ grow::Dials drawn_dials(std::uint64_t seed) {
     dials.middle_bias = random.uniform();
     dials.flint.q = -0.4 - 0.4 * random.uniform();
     dials.seed = 1000 + seed;
+    dials.divides = grow::Divides::shares;
+    for (auto* divide : {&dials.divide_across, &dials.divide_below, &dials.divide_above}) {
+        *divide = {.mean = 0.4 + 0.2 * random.uniform(), .delta = 0.1 + 0.2 * random.uniform()};
+    }
     return dials;
 }
 
@@ -58,7 +62,7 @@ TEST_CASE("Dials found on grown networks are those put in, within their stated e
         CHECK(fit.dials.channel_maintenance_m == Approx(1000).epsilon(0.01));
         CHECK(fit.dials.flint.p == Approx(truth.flint.p).epsilon(0.01));
         CHECK(fit.dials.flint.q == Approx(truth.flint.q).margin(0.01));
-        REQUIRE(fit.table.size() == 11);
+        REQUIRE(fit.table.size() == 17);
         const auto put_in = matched(truth), found = matched(fit.dials);
         for (std::size_t i = 0; i < put_in.size(); ++i) {
             const double error = fit.table[3 + i].value.standard_error;
@@ -114,6 +118,50 @@ TEST_CASE("What was not measured is left open, and what cannot be grown is said"
     auto level = measures;
     level.flint.coefficient.value = 0;
     CHECK_THROWS_AS(fit_dials(basin, level, 1), Error);
+}
+
+namespace {
+
+/// Mean shares of the divides across from, below and above tributaries, on the rasters of several grown terrains.
+std::array<double, 3> divides_on_rasters(const std::array<double, 3>& drawn) {
+    constexpr int seeds = 6;
+    std::array<double, 3> sum{};
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        Experiment e;
+        e.seed = seed;
+        e.growth.channel_maintenance_m = 1000;
+        e.growth.dials.divides = grow::Divides::shares;
+        e.growth.dials.divide_across.mean = drawn[0];
+        e.growth.dials.divide_below.mean = drawn[1];
+        e.growth.dials.divide_above.mean = drawn[2];
+        e.output.resolution = 600;
+        const GrownTerrain t =
+            grown_terrain(e, {.basin = support::square_basin(12000), .crs_wkt = "", .warnings = {}}, {});
+        MeasureOptions options = measure_options(t);
+        options.heads = grown_heads(t);
+        options.channels = ChannelRule::heads;
+        const auto m = growth_measures(t.elevation, measure_raster(t.elevation, options)).divides;
+        for (std::size_t i = 0; const auto* divide : {&m.across, &m.below, &m.above}) {
+            CHECK(divide->share.count > 0.95 * t.growth.network.junctions.size());
+            sum[i++] += divide->share.mean.value / seeds;
+        }
+    }
+    return sum;
+}
+
+}  // namespace
+
+TEST_CASE("Divides drawn where water parts are measured on the terrain's raster within 0.04 of their angle") {
+    // On these slopes (Flint's p of 0.1, sidewalls of 25°) water that arrives at a junction comes from a little
+    // upstream.
+    const std::array drawn{0.6, 0.55, 0.47};
+    const auto measured = divides_on_rasters(drawn);
+    for (std::size_t i = 0; i < 3; ++i) {
+        INFO(i);
+        CHECK(measured[i] == Approx(drawn[i]).margin(0.04));
+    }
+    // A divide between two rivers that meet is a crest and goes where it was put; along the others water runs.
+    CHECK(divides_on_rasters({0.6, 0.55, 0.6})[2] > measured[2] + 0.04);
 }
 
 TEST_CASE("What is measured on a grown tree is measured on its raster too, where its sources are known") {

@@ -104,6 +104,10 @@ inline thalweg::grow::Dials random_dials(thalweg::Random& random, const thalweg:
         random.below(2) ? thalweg::grow::UpstreamLink::turns : thalweg::grow::UpstreamLink::keeps_line;
     dials.stop = random.below(2) ? thalweg::grow::Stop::links : thalweg::grow::Stop::density;
     dials.seed = random.below(1u << 30);
+    dials.divides = random.below(2) ? thalweg::grow::Divides::shares : thalweg::grow::Divides::slopes;
+    for (auto* divide : {&dials.divide_across, &dials.divide_below, &dials.divide_above}) {
+        *divide = {.mean = 0.1 + 0.8 * random.uniform(), .delta = 0.8 * random.uniform()};
+    }
     return dials;
 }
 

@@ -14,7 +14,8 @@ GrowthMeasures growth_measures(const NetworkInValleys& n) {
             .side_choices = side_choices(joining),
             .links = link_lengths(n.network),
             .flint = flint,
-            .junctions = junction_angles(n.network, n.offset_m, n.reach_m, flint.exponent.value)};
+            .junctions = junction_angles(n.network, n.offset_m, n.reach_m, flint.exponent.value),
+            .divides = divide_angles(n.divides, streams)};
 }
 
 }  // namespace thalweg::channel

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "channel/directions.hpp"
+#include "channel/valley_map.hpp"
 
 namespace thalweg::channel {
 
@@ -21,56 +22,6 @@ std::vector<double> own_areas(const StreamNetwork& network) {
         if (network.downstream[link] != none) own[network.downstream[link]] -= network.area_m2[link];
     }
     return own;
-}
-
-/// Link of every channel node; a node that links share is of the one below.
-std::vector<Index> link_of_nodes(const StreamNetwork& network, Index nodes) {
-    std::vector<Index> link_of(nodes, none);
-    for (Index link = 0; link < network.size(); ++link) {
-        const auto own = network.nodes_of(link);
-        const std::size_t shared = network.downstream[link] != none;
-        for (const Index node : own.first(own.size() - shared)) link_of[node] = link;
-    }
-    return link_of;
-}
-
-/// Where each node's water reaches a channel, and from which bank. `none` where it reaches none; channels are their
-/// own.
-struct Valleys {
-    std::vector<Index> foot;
-    std::vector<Bank> bank;
-};
-
-Bank bank_of(const Point& downstream, const Point& to_side) {
-    return downstream.x * to_side.y - downstream.y * to_side.x >= 0 ? Bank::left : Bank::right;
-}
-
-/// The way on from a channel node; at a mouth the way that led there.
-Point downstream_of(const terrain::FlowGraph& graph, const OffsetOf& offset, std::span<const Index> before,
-                    Index node) {
-    const Index receiver = graph.receiver[node];
-    if (receiver != none) return offset(node, receiver);
-    return before[node] == none ? Point{0, 0} : offset(before[node], node);
-}
-
-Valleys valleys(const terrain::FlowGraph& graph, const OffsetOf& offset, std::span<const Index> link_of) {
-    std::vector<Index> before(graph.size(), none);  // a channel node that flows into this one
-    for (const Index node : graph.order) {
-        if (link_of[node] != none && graph.receiver[node] != none) before[graph.receiver[node]] = node;
-    }
-    Valleys v{std::vector<Index>(graph.size(), none), std::vector<Bank>(graph.size(), Bank::left)};
-    for (const Index node : graph.order) {
-        const Index receiver = graph.receiver[node];
-        if (link_of[node] != none) {
-            v.foot[node] = node;
-        } else if (receiver != none) {
-            v.foot[node] = v.foot[receiver];
-            const bool arrives = v.foot[receiver] == receiver;
-            v.bank[node] = arrives ? bank_of(downstream_of(graph, offset, before, receiver), offset(receiver, node))
-                                   : v.bank[receiver];
-        }
-    }
-    return v;
 }
 
 /// How far a straight line from the centre of a cell runs through cells that are inside, in steps of half a cell.

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <string_view>
+#include <utility>
 
 #include "thalweg/core/error.hpp"
 #include "thalweg/grow/grow.hpp"
@@ -27,6 +28,11 @@ void check_dials(const Dials& dials) {
     check_range("delta_sidewall_angle_deg", dials.delta_sidewall_angle_deg, 0, 44);
     const double delta = dials.delta_sidewall_angle_deg;
     check_range("sidewall_angle_deg", dials.sidewall_angle_deg, 1 + delta, 89 - delta);
+    for (const auto& [place, divide] :
+         {std::pair{"across", dials.divide_across}, {"below", dials.divide_below}, {"above", dials.divide_above}}) {
+        check_range(fmt::format("divide_{}", place), divide.mean, 0.1, 0.9);
+        check_range(fmt::format("delta_divide_{}", place), divide.delta, 0, 0.8);
+    }
     check_range("lower_bias", dials.lower_bias, 0, 1);
     check_range("middle_bias", dials.middle_bias, 0, 1);
 }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "grow/candidates.hpp"
@@ -26,6 +27,7 @@ constexpr double shortest_split_at_last = 0.02;
 constexpr double room_beyond_source = 0.5;
 constexpr double least_width_of_side = 0.5;
 constexpr double shortest_tributary = 0.5;  // of the shortest link that is split
+constexpr double least_divide_share = 0.1;  // of the angle: a divide along a link would leave that side nothing
 constexpr double density_met = 0.01;        // so much length may be missing: under 1 % in a basin of one C²
 
 constexpr Index looked_ahead = 16;     // candidates
@@ -35,7 +37,7 @@ constexpr Index draws_per_step = 16;
 constexpr Index tries_per_side = 4;
 
 /// What is drawn: each has a stream of random numbers of its own.
-enum class Draw : std::uint32_t { junction = 0x67726f00, length, side, lengthening, sidewall };
+enum class Draw : std::uint32_t { junction = 0x67726f00, length, side, lengthening, sidewall, divide };
 
 constexpr Side opposite(Side side) { return side == Side::left ? Side::right : Side::left; }
 
@@ -74,6 +76,7 @@ class Grower {
     Side drawn_side(const GrowingLink&, double share_of_link, double number_drawn) const;
     bool is_wide_enough(const GrowingLink&, Side) const;
     std::array<double, 2> drawn_sidewalls(Index link) const;
+    std::optional<DivideShares> drawn_divides(std::uint64_t draw_number) const;
     StopReason grow_until_stopped();
 
     GrowingTree tree_;
@@ -215,6 +218,17 @@ std::array<double, 2> Grower::drawn_sidewalls(Index link) const {
     return slope;
 }
 
+std::optional<DivideShares> Grower::drawn_divides(std::uint64_t draw_number) const {
+    if (dials_.divides == Divides::slopes) return std::nullopt;
+    const auto share = [&](const DrawnShare& dial, std::uint64_t which) {
+        const double rand = 2 * uniform(Draw::divide, 3 * draw_number + which) - 1;
+        return std::clamp(dial.mean + rand * dial.delta, least_divide_share, 1 - least_divide_share);
+    };
+    return DivideShares{.across = share(dials_.divide_across, 0),
+                        .below = share(dials_.divide_below, 1),
+                        .above = share(dials_.divide_above, 2)};
+}
+
 bool Grower::add_tributary(Index number) {
     const auto upper = static_cast<Index>(tree_.links.size());
     for (Index attempt = 0; attempt < 2 * tries_per_side; ++attempt) {
@@ -230,6 +244,7 @@ bool Grower::add_tributary(Index number) {
             .side = side,
             .share_of_way = drawn_share(dials_.mean_length, dials_.delta_length, uniform(Draw::length, draw_number)),
             .sidewall_slope = drawn_sidewalls(upper + 1),
+            .divides = drawn_divides(draw_number),
             .shortest_m = shortest_tributary * shortest_split_,
             .longest_m = missing_length()};
         const auto plan = plan_junction(tree_, dials_, number, draw);

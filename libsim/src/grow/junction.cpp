@@ -53,11 +53,17 @@ void set_directions(const GrowingLink& link, const Flint& flint, const Point& up
         if (is_tributary) add_ray(plan, upstream, Arm::tributary, at.angle_rad);
         if (!is_tributary && plan.turn_rad > 0) add_ray(plan, upstream, Arm::upstream_link, at.angle_rad);
     };
-    add_ray(plan, upstream, Arm::divide, divide_between(down_by_right, right));
+    const auto& drawn = plan.draw.divides;
+    const auto parting = [&](const LinkAtJunction& first, const LinkAtJunction& second, double drawn_share) {
+        if (!drawn) return divide_between(first, second);
+        return first.angle_rad + drawn_share * (second.angle_rad - first.angle_rad);
+    };
+    const DivideShares share = drawn.value_or(DivideShares{});
+    add_ray(plan, upstream, Arm::divide, parting(down_by_right, right, on_left ? share.across : share.below));
     add_link(!on_left, right);
-    add_ray(plan, upstream, Arm::divide, divide_between(right, left));
+    add_ray(plan, upstream, Arm::divide, parting(right, left, on_left ? 1 - share.above : share.above));
     add_link(on_left, left);
-    add_ray(plan, upstream, Arm::divide, divide_between(left, down_by_left));
+    add_ray(plan, upstream, Arm::divide, parting(left, down_by_left, 1 - (on_left ? share.below : share.across)));
 }
 
 /// Number of rays that start into the right polygon, if the upstream link keeps its line.

@@ -9,12 +9,20 @@
 
 namespace thalweg::grow {
 
+/// Where the divides of a junction run between the two links that each one parts.
+struct DivideShares {
+    double across;  ///< from the downstream link to the upstream one
+    double below;   ///< from the downstream link to the tributary
+    double above;   ///< from the tributary to the upstream link
+};
+
 /// The drawn part of a new tributary.
 struct TributaryDraw {
     double share_of_link;  ///< from the lower end
     Side side;
     double share_of_way;  ///< to the polygon's edge
     std::array<double, 2> sidewall_slope;
+    std::optional<DivideShares> divides;  ///< nothing: by the slopes
     double shortest_m;  ///< no room for less
     double longest_m;   ///< a longer one is cut
 };

@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numbers>
 #include <unordered_set>
+#include <utility>
 
 #include "grow/plane.hpp"
 
@@ -57,6 +60,23 @@ void add_ridge(const Network& network, std::span<const double> elevation_m, std:
     }
 }
 
+/// Counter-clockwise from one direction to another, in [0, 2π).
+double turn(const Point& from, const Point& to) {
+    const double angle = std::atan2(cross(from, to), dot(from, to));
+    return angle < 0 ? angle + 2 * std::numbers::pi : angle;
+}
+
+/// Per vertex the other ends of the divides that leave it.
+std::vector<std::vector<Index>> divides_at(const Network& network) {
+    std::vector<std::vector<Index>> ends(network.vertices.size());
+    for (const Edge& edge : network.edges) {
+        if (edge.kind != EdgeKind::divide) continue;
+        ends[edge.from].push_back(edge.to);
+        ends[edge.to].push_back(edge.from);
+    }
+    return ends;
+}
+
 }  // namespace
 
 channel::OffsetOf offsets(const Network& network) {
@@ -94,13 +114,44 @@ std::vector<channel::ValleySide> valley_sides(const Network& network, std::span<
     return sides;
 }
 
+std::vector<channel::JunctionDivide> junction_divides(const Network& network) {
+    const auto divides = divides_at(network);
+    std::vector<channel::JunctionDivide> found;
+    for (const Junction& junction : network.junctions) {
+        const Point& place = network.vertices[junction.vertex];
+        const auto direction = [&](Index vertex) { return network.vertices[vertex] - place; };
+        struct Arm {
+            Index link;
+            Point direction;
+        };
+        const Arm below{junction.downstream, direction(network.lower[junction.downstream])};
+        Arm right{junction.upstream, direction(network.upper[junction.upstream])};
+        Arm left{junction.tributary, direction(network.upper[junction.tributary])};
+        if (turn(below.direction, right.direction) > turn(below.direction, left.direction)) std::swap(left, right);
+        const std::array arms{below, right, left};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Arm &first = arms[i], &second = arms[(i + 1) % 3];
+            const double sector = turn(first.direction, second.direction);
+            std::vector<double> between;
+            for (const Index far : divides[junction.vertex]) {
+                const double angle = turn(first.direction, direction(far));
+                if (angle < sector) between.push_back(angle);
+            }
+            if (between.size() != 1) continue;
+            found.push_back({junction.downstream, {first.link, second.link}, sector, between.front()});
+        }
+    }
+    return found;
+}
+
 channel::GrowthMeasures growth_measures(const Network& network, std::span<const double> elevation_m) {
     const channel::StreamNetwork streams = stream_network(network, elevation_m);
     return channel::growth_measures({.network = streams,
                                      .offset_m = offsets(network),
                                      .reach_m = std::numeric_limits<double>::infinity(),  // links are straight
                                      .beyond_source_m = beyond_sources(network),
-                                     .valley_sides = valley_sides(network, elevation_m)});
+                                     .valley_sides = valley_sides(network, elevation_m),
+                                     .divides = junction_divides(network)});
 }
 
 }  // namespace thalweg::grow

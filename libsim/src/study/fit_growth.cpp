@@ -60,6 +60,14 @@ Json shares_json(const std::array<channel::Share, 3>& shares) {
     return thirds;
 }
 
+Json divide_json(const channel::DivideAngles& divide) {
+    Json json = draw_json(divide.share);
+    json["angle_mean_deg"] = number(divide.mean_rad * degrees);
+    json["angle_sd_deg"] = number(divide.sd_rad * degrees);
+    json["between_mean_deg"] = number(divide.sector_mean_rad * degrees);
+    return json;
+}
+
 Json lengths_json(const channel::LengthStatistics& lengths) {
     return {{"count", lengths.count}, {"mean_m", number(lengths.mean_m)}, {"sd_m", number(lengths.sd_m)}};
 }
@@ -75,6 +83,9 @@ Json measures_json(const GrowthFit& fit) {
             {"opposite_side_by_third", shares_json(m.side_choices.opposite)},
             {"exterior_links", lengths_json(m.links.exterior)},
             {"interior_links", lengths_json(m.links.interior)},
+            {"divide_across", divide_json(m.divides.across)},
+            {"divide_below", divide_json(m.divides.below)},
+            {"divide_above", divide_json(m.divides.above)},
             {"junction_angle_deg",
              {{"count", m.junctions.count},
               {"mean", number(m.junctions.mean_rad * degrees)},
@@ -207,7 +218,8 @@ channel::GrowthMeasures growth_measures(const Raster& raster, const RasterMeasur
          .offset_m = m.terrain.offset_m,
          .reach_m = reach_m,
          .beyond_source_m = channel::beyond_sources(raster.grid, m.terrain.graph, network, reach_m),
-         .valley_sides = channel::valley_sides(raster.grid, m.terrain.graph, m.terrain.elevation_m, network)});
+         .valley_sides = channel::valley_sides(raster.grid, m.terrain.graph, m.terrain.elevation_m, network),
+         .divides = channel::junction_divides(raster.grid, m.terrain.graph, network, reach_m)});
     measures.channel_maintenance_m = scaled(measures.channel_maintenance_m, d8_length_factor);
     return measures;
 }

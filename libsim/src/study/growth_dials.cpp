@@ -119,6 +119,37 @@ grow::Flint flint_of(const PowerLawFit& fit, std::vector<std::string>& notes) {
     return flint;
 }
 
+/// A kind of divide, and the dial that draws it.
+struct DivideDial {
+    const char *name, *delta_name;
+    const channel::DivideAngles& measured;
+    grow::DrawnShare& dial;
+};
+
+std::array<DivideDial, 3> divide_dials(const channel::DividesByPlace& m, grow::Dials& d) {
+    return {{{"divide_across", "delta_divide_across", m.across, d.divide_across},
+             {"divide_below", "delta_divide_below", m.below, d.divide_below},
+             {"divide_above", "delta_divide_above", m.above, d.divide_above}}};
+}
+
+/// Divides run as they were measured, for nothing that grows later turns them.
+std::vector<FittedDial> take_divides(const channel::DividesByPlace& m, DialsFit& fit) {
+    const auto dials = divide_dials(m, fit.dials);
+    if (std::ranges::any_of(dials, [](const DivideDial& d) { return d.measured.share.count < 2; })) {
+        fit.notes.push_back("divides: too few junctions to tell where they run; the slopes decide");
+        return {};
+    }
+    std::vector<FittedDial> table;
+    fit.dials.divides = grow::Divides::shares;
+    for (const DivideDial& d : dials) {
+        const channel::UniformDraw& share = d.measured.share;
+        d.dial = {.mean = std::clamp(share.mean.value, 0.1, 0.9), .delta = std::clamp(share.delta.value, 0.0, 0.8)};
+        table.push_back({d.name, share.mean, share.count, "divides at junctions", true});
+        table.push_back({d.delta_name, share.delta, share.count, "divides at junctions", true});
+    }
+    return table;
+}
+
 struct NamedMeasure {
     const char* name;
     double value;
@@ -142,6 +173,12 @@ std::vector<NamedMeasure> checked_measures(const channel::GrowthMeasures& m) {
             {"upper_obtuse", m.side_choices.obtuse[2].value},
             {"flint_p", m.flint.coefficient.value},
             {"flint_q", m.flint.exponent.value},
+            {"divide_across", m.divides.across.share.mean.value},
+            {"divide_across_delta", m.divides.across.share.delta.value},
+            {"divide_below", m.divides.below.share.mean.value},
+            {"divide_below_delta", m.divides.below.share.delta.value},
+            {"divide_above", m.divides.above.share.mean.value},
+            {"divide_above_delta", m.divides.above.share.delta.value},
             {"junction_angle_deg", m.junctions.mean_rad * 180 / 3.14159265358979323846}};
 }
 
@@ -181,6 +218,7 @@ DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, s
     fit.table = {{"channel_maintenance_m", m.channel_maintenance_m, links, "area over channel length", true},
                  {"flint_p", m.flint.coefficient, links, "slopes of links by magnitude", true},
                  {"flint_q", m.flint.exponent, links, "slopes of links by magnitude", true}};
+    const std::vector<FittedDial> divides = take_divides(m.divides, fit);
     const auto matched = matched_dials(m);
     infer::MatchOptions options{.ranges = {}, .rounds = 4, .draws = draws_for(links), .seed = seed};
     for (const MatchedDial& dial : matched) options.ranges.push_back(dial.range);
@@ -197,6 +235,7 @@ DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, s
             fit.notes.push_back(fmt::format("{}: the network says little about it", matched[i].name));
         }
     }
+    fit.table.insert(fit.table.end(), divides.begin(), divides.end());
     fit.dials = with(fit.dials, matched, values);
     fit.dials.seed = seed;
     fit.check = check_by_growing(basin, fit.dials, m, seed + 1000000);

@@ -425,6 +425,10 @@ const Words<grow::Stop>& words(grow::Stop) {
     static const Words<grow::Stop> all{{"density", grow::Stop::density}, {"links", grow::Stop::links}};
     return all;
 }
+const Words<grow::Divides>& words(grow::Divides) {
+    static const Words<grow::Divides> all{{"slopes", grow::Divides::slopes}, {"shares", grow::Divides::shares}};
+    return all;
+}
 const Words<grow::UpstreamLink>& words(grow::UpstreamLink) {
     static const Words<grow::UpstreamLink> all{{"keeps_line", grow::UpstreamLink::keeps_line},
                                                {"turns", grow::UpstreamLink::turns}};

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "thalweg/channel/divides.hpp"
 #include "thalweg/channel/laws.hpp"
 #include "thalweg/channel/links.hpp"
 #include "thalweg/channel/tributaries.hpp"
@@ -18,6 +19,7 @@ struct NetworkInValleys {
     double reach_m;  ///< over which directions are taken
     std::vector<double> beyond_source_m;
     std::vector<ValleySide> valley_sides;
+    std::vector<JunctionDivide> divides;
 };
 
 /// What tells of the dials with which a network could have grown (Kelley, Malin & Nielson 1988). Measured by the same
@@ -31,6 +33,7 @@ struct GrowthMeasures {
     LinkLengths links;
     PowerLawFit flint;
     JunctionAngles junctions;
+    DividesByPlace divides;
 };
 
 /// Streams are told by direction (`straightest_streams`), for a growing network's streams are straight.

@@ -21,6 +21,18 @@ enum class UpstreamLink : std::uint8_t {
     turns  ///< by Howard's angle E2, away from the tributary
 };
 
+/// Where the three divides of a junction run.
+enum class Divides : std::uint8_t {
+    slopes,  ///< by the slopes of links and valley sides: `divide_direction`
+    shares   ///< by drawn shares of the angle between the two links that each one parts
+};
+
+/// Mean and delta of a drawn value.
+struct DrawnShare {
+    double mean = 0.5;
+    double delta = 0;
+};
+
 /// What shapes a network (Kelley, Malin & Nielson 1988). A drawn value is mean + Rand·delta, Rand uniform on [−1, 1].
 struct Dials {
     double channel_maintenance_m = 500;  ///< C: area per channel length wanted, m; > 0
@@ -33,6 +45,10 @@ struct Dials {
     double delta_sidewall_angle_deg = 5;
     double lower_bias = 0.7;   ///< share of tributaries on the obtuse side of a stream's lower third, 0–1
     double middle_bias = 0.7;  ///< share opposite the next one downstream in its middle third, 0–1
+    Divides divides = Divides::slopes;
+    DrawnShare divide_across;  ///< from the downstream link to the upstream one, on the side without tributary
+    DrawnShare divide_below;   ///< from the downstream link to the tributary
+    DrawnShare divide_above;   ///< from the tributary to the upstream link
     UpstreamLink upstream_link = UpstreamLink::keeps_line;
     Stop stop = Stop::density;
     std::uint64_t seed = 1;
@@ -70,8 +86,8 @@ struct Growth {
 /// met when no link is left, exterior links may turn; after that the lengths C/5 and C/10 are halved, again and again
 /// down to C/50 and C/100. `Growth::last_resorts` says how often this was needed.
 ///
-/// Three divides leave each junction (`divide_direction`) and run to the nearest side of the polygon. A ray that passes
-/// a vertex within 1e-9·C ends there.
+/// Three divides leave each junction (see `Divides`; drawn shares are kept in 0.1–0.9) and run to the nearest side of
+/// the polygon. A ray that passes a vertex within 1e-9·C ends there.
 ///
 /// The same seed gives the same network to the last bit. Cost: N log N steps for N links (the magnitudes at a junction
 /// are counts in a balanced sequence of the sources; the rays walk around their polygon, whose sides do not grow in

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "thalweg/channel/divides.hpp"
 #include "thalweg/channel/growth_measures.hpp"
 #include "thalweg/channel/links.hpp"
 #include "thalweg/channel/valleys.hpp"
@@ -21,6 +22,10 @@ std::vector<double> beyond_sources(const Network&);
 /// for channels and for the line that goes on beyond a source, straight between their ends in height too, compared with
 /// the nearest point of the link. Eight points on each are a sample. `elevation_m` per vertex.
 std::vector<channel::ValleySide> valley_sides(const Network&, std::span<const double> elevation_m);
+
+/// The three divides of every junction by their first piece, which is as it was drawn. As channel::junction_divides on
+/// a raster. Where tributaries' lines happen to end in a junction, what lies between the same two links is left out.
+std::vector<channel::JunctionDivide> junction_divides(const Network&);
 
 /// What a DEM's rivers and valleys would be measured by, on the grown tree itself.
 channel::GrowthMeasures growth_measures(const Network&, std::span<const double> elevation_m);

@@ -34,8 +34,8 @@ struct DialsFit {
     std::vector<std::string> notes;
 };
 
-/// Dials with which networks grow in a basin that measure like the one that was measured. C and Flint's law are taken
-/// as measured. The others are found by growing (infer::match): the place of a junction on its stream, the way to the
+/// Dials with which networks grow in a basin that measure like the one that was measured. C, Flint's law and
+/// the divides' shares are taken as measured. The others are found by growing (infer::match): the place of a junction on its stream, the way to the
 /// divide, sidewalls and sides are changed by what grows later, so the dial is not what is measured. The check is over
 /// 20 further seeds. Throws Error for what `grow` refuses, and for measures without C or Flint's law.
 DialsFit fit_dials(const grow::Basin&, const channel::GrowthMeasures&, std::uint64_t seed);

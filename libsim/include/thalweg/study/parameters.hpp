@@ -191,6 +191,7 @@ const Words<MeshFile>& words(MeshFile);
 const Words<FitMethod>& words(FitMethod);
 const Words<StudyModel>& words(StudyModel);
 const Words<grow::Stop>& words(grow::Stop);
+const Words<grow::Divides>& words(grow::Divides);
 const Words<grow::UpstreamLink>& words(grow::UpstreamLink);
 const Words<grow::Thalweg>& words(grow::Thalweg);
 const Words<evolve::Pattern>& words(evolve::Pattern);
@@ -255,13 +256,28 @@ void describe_growth(AnyExperiment& e, Visit& visit) {
     visit(
         Field{"growth.middle_bias", "", "share on the side opposite the next one downstream in its middle third", 0, 1},
         g.dials.middle_bias);
+    visit(Field{"growth.divides", "",
+                "where the divides at a junction run: by the slopes of links and valley sides, or by drawn shares"},
+          g.dials.divides);
+    visit(Field{"growth.divide_across", "",
+                "share of the angle from the link below to the one above at which the divide across from the tributary "
+                "leaves; this and the following five for growth.divides = \"shares\"",
+                0.1, 0.9},
+          g.dials.divide_across.mean);
+    visit(Field{"growth.delta_divide_across", "", "spread of that share", 0, 0.8}, g.dials.divide_across.delta);
+    visit(Field{"growth.divide_below", "", "the same from the link below to the tributary", 0.1, 0.9},
+          g.dials.divide_below.mean);
+    visit(Field{"growth.delta_divide_below", "", "spread of that share", 0, 0.8}, g.dials.divide_below.delta);
+    visit(Field{"growth.divide_above", "", "the same from the tributary to the link above", 0.1, 0.9},
+          g.dials.divide_above.mean);
+    visit(Field{"growth.delta_divide_above", "", "spread of that share", 0, 0.8}, g.dials.divide_above.delta);
     visit(Field{"growth.upstream_link", "", "whether an exterior link turns when it receives a tributary"},
           g.dials.upstream_link);
     visit(Field{"growth.stop", "", "stop at the drainage density wanted, or when no link can take a tributary"},
           g.dials.stop);
-    visit(Field{"growth.thalweg", "",
-                "the surface's gradient on channels: the channel's own, or found like all others"},
-          g.thalweg);
+    visit(
+        Field{"growth.thalweg", "", "the surface's gradient on channels: the channel's own, or found like all others"},
+        g.thalweg);
     visit(Field{"growth.tension_channel", "", "tension of the surface at channels", 0, 1e6}, g.tension_channel);
     visit(Field{"growth.tension_ridge", "", "tension at divides and the outline", 0, 1e6}, g.tension_ridge);
     visit(Field{"growth.extra_tension_channel", "", "tension of edges along channels beyond the mean of their ends'", 0,
@@ -354,7 +370,9 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"time.max_steps", "", "most steps (or sweeps of the steady solver)", 1, 1e9}, e.time.max_steps);
     visit(Field{"time.convergence", "", "stop when the mean rate is below this share of the mean uplift; 0: never", 0},
           e.time.convergence);
-    visit(Field{"output.resolution", "", "cells along the longer side of the heightfield; default 512 of a TIN, a raster mesh's own cells", 2, 100000},
+    visit(Field{"output.resolution", "",
+                "cells along the longer side of the heightfield; default 512 of a TIN, a raster mesh's own cells", 2,
+                100000},
           e.output.resolution);
     visit(Field{"output.interpolation", "",
                 "how a TIN becomes a heightfield: smoothed, linear in its triangles, or by natural neighbours"},
@@ -389,7 +407,8 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"study.crs", "", "coordinate system to use instead of the DEM's, e.g. EPSG:32611"}, e.study.crs);
     visit(Field{"study.nodata", "m", "value to be taken as no data, besides what the DEM declares"}, e.study.nodata);
     visit(Field{"study.uplift_m_per_yr", "m/yr",
-                "uplift rate of the real landscape (k cannot be told without); a study by stream-power needs it", 0, infinity, true},
+                "uplift rate of the real landscape (k cannot be told without); a study by stream-power needs it", 0,
+                infinity, true},
           e.study.uplift_m_per_yr);
     visit(Field{"study.uplift_sd_m_per_yr", "m/yr", "standard deviation of that rate", 0}, e.study.uplift_sd_m_per_yr);
     visit(Field{"study.method", "", "what is matched"}, e.study.method);
