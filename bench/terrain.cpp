@@ -42,13 +42,11 @@ void route(benchmark::State& state) {
 void fill_flats_route_area(benchmark::State& state) {
     const Dem dem = rough_dem(state);
     const ThreadLimit limit(static_cast<int>(state.range(1)));
-    const std::vector<double> cells = terrain::cell_areas(dem.grid);
     for (auto _ : state) {
         const auto filled = terrain::fill(dem.grid, dem.z, dem.boundary);
         auto directions = terrain::route(dem.grid, filled, dem.boundary);
         terrain::resolve_flats(dem.grid, filled, dem.boundary, directions);
-        const auto graph = terrain::flow_graph(dem.grid, filled, directions);
-        benchmark::DoNotOptimize(terrain::accumulate(graph, cells));
+        benchmark::DoNotOptimize(terrain::graph_and_area(dem.grid, filled, std::move(directions)));
     }
     per_item(state, dem.grid.size());
 }

@@ -21,7 +21,7 @@ Profile rivers(Index count, Index sources, double theta, std::uint32_t seed, dou
     for (Index one = 0; one < count; ++one) {
         const auto tree = support::random_tree(sources, random);
         const Index base = static_cast<Index>(receiver.size());
-        for (const Index below : tree.receiver) receiver.push_back(below == none ? none : below + base);
+        for (const Index below : tree.receiver.list()) receiver.push_back(below == none ? none : below + base);
     }
     const auto graph = support::graph_of(receiver, 100);
     auto area = support::upstream_counts(graph);
@@ -83,7 +83,8 @@ TEST_CASE("A single scattered river has errors from its tributaries, the same in
     const Profile profile = rivers(1, 150, 0.45, 3, 0.3, straight);
     const Concavity best = concavity(profile), again = concavity(profile);
     CHECK(std::isnan(best.linearity.standard_error));
-    for (const auto& [one, other] : {std::pair{best.collinearity, again.collinearity}, {best.disorder, again.disorder}}) {
+    for (const auto& [one, other] :
+         {std::pair{best.collinearity, again.collinearity}, {best.disorder, again.disorder}}) {
         CHECK(one.value == Approx(0.45).margin(0.15));
         CHECK(one.standard_error > 0.001);
         CHECK(one.standard_error < 0.2);

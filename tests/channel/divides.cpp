@@ -35,14 +35,14 @@ struct Drawn {
 /// Water goes straight to a channel cell of the valley's link: only where it arrives counts.
 Drawn drawn(const Meeting& m) {
     Drawn d{.grid = plane_grid(side, side, m.cell_m, m.cell_m), .graph = {}, .network = {}};
-    d.graph.receiver.assign(side * side, none);
-    d.graph.length.assign(side * side, 0);
+    std::vector<Index> receiver(side * side, none);
+    std::vector<double> length(side * side, 0);
     std::vector<std::uint8_t> channel(side * side, 0);
     std::vector<Index> along;  // receivers first
     const auto flows = [&](Index from, Index to) {
         channel[from] = 1;
-        d.graph.receiver[from] = to;
-        d.graph.length[from] = m.cell_m;
+        receiver[from] = to;
+        length[from] = m.cell_m;
         along.push_back(from);
     };
     channel[cell(side - 1, middle)] = 1;
@@ -65,10 +65,12 @@ Drawn drawn(const Meeting& m) {
             std::size_t valley = 0;
             if (angle > m.divides[0] && angle <= m.divides[1]) valley = 1;
             if (angle > m.divides[1] && angle <= m.divides[2]) valley = 2;
-            d.graph.receiver[cell(row, col)] = feet[valley];
+            receiver[cell(row, col)] = feet[valley];
             along.push_back(cell(row, col));
         }
     }
+    d.graph.receiver = std::move(receiver);
+    d.graph.length = std::move(length);
     d.graph.order = along;
     std::vector<double> area(side * side, 1), elevation(side * side, 0);
     d.network = stream_network(d.graph, channel, area, elevation);
@@ -127,11 +129,13 @@ TEST_CASE("A few cells on the wrong side of a divide do not turn it") {
     const Meeting m{.divides = {0.8, 2.3, 4.9}};
     Drawn d = drawn(m);
     Random random(3, 0);
+    std::vector<Index> receiver = d.graph.receiver.list();
     for (int i = 0; i < 60; ++i) {  // of 1256 in the disc
         const Index row = middle - 20 + random.below(41), col = middle - 20 + random.below(41);
         if (row == middle || col == middle) continue;
-        d.graph.receiver[cell(row, col)] = cell(middle - 5, middle);
+        receiver[cell(row, col)] = cell(middle - 5, middle);
     }
+    d.graph.receiver = std::move(receiver);
     const auto divides = divide_angles(junction_divides(d.grid, d.graph, d.network, 200),
                                        straightest_streams(d.network, offsets(d.grid), 200));
     CHECK(divides.above.mean_rad == Approx(2.3 - pi / 2).margin(0.05));

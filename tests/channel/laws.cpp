@@ -30,7 +30,9 @@ TEST_CASE("The longest way up from a node is the one a walk over all its sources
     for (std::uint32_t trial = 0; trial < 20; ++trial) {
         Random random(21, trial);
         terrain::FlowGraph graph = support::random_tree(60, random);
-        for (double& length : graph.length) length = length > 0 ? 1 + random.uniform() : 0;
+        std::vector<double> lengths = graph.length.list();
+        for (double& length : lengths) length = length > 0 ? 1 + random.uniform() : 0;
+        graph.length = std::move(lengths);
         std::vector<double> brute(graph.size(), 0);
         for (Index start = 0; start < graph.size(); ++start) {
             double walked = 0;

@@ -168,7 +168,7 @@ TEST_CASE("Links at a mouth, at sources and beside triple junctions are neither 
     CHECK(found.trans.count == 0);
     CHECK(std::isnan(found.cis_share));
     const Comb two({1, 1});
-    auto receiver = two.graph.receiver;
+    auto receiver = two.graph.receiver.list();
     auto at = two.at;
     receiver.push_back(3);  // a third river joins at the lower junction
     at.push_back({-1, 3});

@@ -277,12 +277,14 @@ TEST_CASE("Only nodes with enough area that may be used are channels") {
 
 TEST_CASE("A river of a million nodes needs no stack") {
     constexpr Index count = 1'000'000;
-    FlowGraph graph;
-    for (Index node = 0; node < count; ++node) {
-        graph.receiver.push_back(node == 0 ? none : node - 1);
-        graph.length.push_back(node == 0 ? 0 : 1);
-        graph.order.push_back(node);
+    std::vector<Index> receiver(count, none), order(count, 0);
+    std::vector<double> length(count, 0);
+    for (Index node = 1; node < count; ++node) {
+        receiver[node] = node - 1;
+        length[node] = 1;
+        order[node] = node;
     }
+    const FlowGraph graph{.receiver = receiver, .length = length, .order = order};
     const StreamNetwork network = network_of(graph);
     REQUIRE(network.size() == 1);
     CHECK(network.length_m[0] == count - 1);

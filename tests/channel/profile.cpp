@@ -45,7 +45,7 @@ River forest(Index trees, double theta, double scatter, std::uint32_t seed) {
     for (Index tree = 0; tree < trees; ++tree) {
         const auto one = support::random_tree(40, random);
         const Index base = static_cast<Index>(receiver.size());
-        for (const Index below : one.receiver) receiver.push_back(below == none ? none : below + base);
+        for (const Index below : one.receiver.list()) receiver.push_back(below == none ? none : below + base);
     }
     river.graph = support::graph_of(receiver, 100);
     river.area = support::upstream_counts(river.graph);

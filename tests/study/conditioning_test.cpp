@@ -68,8 +68,8 @@ TEST_CASE("A depression that is kept is a basin of its own, complete, with its l
     const RasterMeasurement open = measured(raster, Conditioning::fill);
     const RasterMeasurement kept = measured(raster, Conditioning::fill, {.depth_m = 10});
     const Index bottom = 10 * 21 + 10;
-    CHECK(open.directions[bottom] != no_flow);
-    CHECK(kept.directions[bottom] == no_flow);
+    CHECK(open.terrain.graph.receiver[bottom] != none);
+    CHECK(kept.terrain.graph.receiver[bottom] == none);
     CHECK(kept.conditioning.endorheic_basins == 1);
     CHECK(kept.conditioning.filled_m3 == 0);
     CHECK(kept.terrain.complete[bottom] == 1);

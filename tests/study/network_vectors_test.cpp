@@ -39,7 +39,9 @@ MeasureOptions everything(Conditioning conditioning) {
 }  // namespace
 
 TEST_CASE("No river crosses another, on noise, on steps full of flats, and around holes", "[network vectors]") {
-    const terrain::FlowGraph crossed{.receiver = {3, 2, none, none}, .length = {1, 1, 0, 0}, .order = {2, 3, 0, 1}};
+    const terrain::FlowGraph crossed{.receiver = std::vector<Index>{3, 2, none, none},
+                                     .length = std::vector<double>{1, 1, 0, 0},
+                                     .order = {2, 3, 0, 1}};
     REQUIRE(crossings(plane_grid(2, 2, 1, 1), crossed) == 1);
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
         for (const auto& terrain : {support::noise_terrain(30, 40, seed), support::stepped_terrain(30, 40, 3, seed),

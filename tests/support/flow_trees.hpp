@@ -16,8 +16,9 @@ inline terrain::FlowGraph graph_of(std::vector<Index> receiver, double length_m 
     const Index count = static_cast<Index>(receiver.size());
     std::vector<std::vector<Index>> donors(count);
     terrain::FlowGraph graph;
+    std::vector<double> length;
     for (Index node = 0; node < count; ++node) {
-        graph.length.push_back(receiver[node] == none ? 0 : length_m);
+        length.push_back(receiver[node] == none ? 0 : length_m);
         if (receiver[node] == none) graph.order.push_back(node);
         if (receiver[node] != none) donors[receiver[node]].push_back(node);
     }
@@ -25,6 +26,7 @@ inline terrain::FlowGraph graph_of(std::vector<Index> receiver, double length_m 
         for (const Index donor : donors[graph.order[at]]) graph.order.push_back(donor);
     }
     graph.receiver = std::move(receiver);
+    graph.length = std::move(length);
     return graph;
 }
 

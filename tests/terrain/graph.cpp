@@ -206,6 +206,47 @@ TEST_CASE("graph, area and carved surface are the same bytes on one thread and o
     CHECK(with_threads(1) == with_threads(2));
 }
 
+TEST_CASE("areas added while the order is found are those added along the order, bit for bit") {
+    for (const TestTerrain& terrain : shaped_terrains()) {
+        Grid grid = terrain.grid;
+        for (Index row = 0; row < grid.rows; ++row) grid.cell_area[row] *= 1 + 1e-3 * row;  // sums that round
+        const auto boundary = data_edge(grid, terrain.elevation_m);
+        const FlowDirections directions = drained_directions(grid, terrain.elevation_m, boundary);
+        const FlowGraph graph = flow_graph(grid, terrain.elevation_m, directions);
+        const GraphAndArea both = graph_and_area(grid, terrain.elevation_m, directions);
+        CHECK(both.drainage_area_m2 == accumulate(graph, cell_areas(grid)));
+        CHECK(both.graph.order == graph.order);
+        CHECK(both.graph.receiver == graph.receiver);
+    }
+}
+
+TEST_CASE("a grid's receivers and lengths are those of its directions, with rows alike or not") {
+    for (const double growth : {0.0, 0.01}) {
+        Grid grid = plane_grid(7, 5, 3, 4);
+        for (Index row = 0; row < grid.rows; ++row) grid.east_west[row] *= 1 + growth * row;
+        for (Index gap = 0; gap + 1 < grid.rows; ++gap) {
+            grid.north_south[gap] *= 1 + 2 * growth * gap;
+            grid.diagonal[gap] *= 1 + 3 * growth * gap;
+        }
+        const std::vector<double> z(grid.size(), 0);
+        for (Slot slot = 0; slot < 8; ++slot) {
+            FlowDirections directions(grid.size(), no_flow);
+            for (Index node = 0; node < grid.size(); ++node) {
+                grid.neighbors(node, [&](Index, double, Slot s) {
+                    if (s == slot) directions[node] = slot;
+                });
+            }
+            const FlowGraph graph = flow_graph(grid, z, directions);
+            for (Index node = 0; node < grid.size(); ++node) {
+                const bool flows = directions[node] != no_flow;
+                CHECK(graph.receiver[node] == (flows ? grid.neighbor(node, slot) : none));
+                CHECK(graph.length[node] == (flows ? grid.length(node, slot) : 0));
+            }
+            CHECK(graph.receiver.directions() == directions);
+        }
+    }
+}
+
 TEST_CASE("amounts of the wrong number are refused") {
     const Grid grid = plane_grid(2, 2, 1, 1);
     const FlowGraph graph = flow_graph(grid, std::vector<double>(4, 0), FlowDirections(4, no_flow));

@@ -102,7 +102,7 @@ void write_rasters(const Raster& dem, RasterMeasurement& m, const std::filesyste
     };
     write("filled.tif", m.terrain.elevation_m, {.nodata = {}, .description = "conditioned elevation (m)"});
     write("drainage_area.tif", take_area(dem, m), {.nodata = {}, .description = "drainage area (m2)"});
-    write("flow_direction.tif", esri_codes(m.directions, dem.values),
+    write("flow_direction.tif", esri_codes(m.terrain.graph.receiver.directions(), dem.values),
           {.type = io::CellType::uint8,
            .nodata = 255,
            .description = "D8 direction (ESRI codes, 0 outlet)",

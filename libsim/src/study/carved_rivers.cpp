@@ -13,11 +13,12 @@
 namespace thalweg::study {
 namespace {
 
-terrain::FlowGraph carved_graph(const Raster& raster, std::span<const Boundary> boundary, ConditioningReport& report) {
+terrain::GraphAndArea carved_graph(const Raster& raster, std::span<const Boundary> boundary,
+                                   ConditioningReport& report) {
     FlowDirections directions = terrain::route(raster.grid, raster.values, boundary);
     report.flat_cells = terrain::resolve_flats(raster.grid, raster.values, boundary, directions);
     report.pits = terrain::drain_lakes(raster.grid, raster.values, boundary, directions);
-    return terrain::flow_graph(raster.grid, raster.values, directions);
+    return terrain::graph_and_area(raster.grid, raster.values, std::move(directions));
 }
 
 /// Where channels may run. Rules that are still to be decided on the conditioned terrain leave everything open.
@@ -50,20 +51,22 @@ std::vector<Index> places(std::span<const Index> nodes, Index size) {
 /// The graph among these nodes: water that leaves them ends there.
 terrain::FlowGraph graph_among(const terrain::FlowGraph& graph, std::span<const Index> nodes) {
     const std::vector<Index> place = places(nodes, graph.size());
-    terrain::FlowGraph part;
-    for (const Index node : nodes) {
-        const Index receiver = graph.receiver[node] == none ? none : place[graph.receiver[node]];
-        part.receiver.push_back(receiver);
-        part.length.push_back(receiver == none ? 0 : graph.length[node]);
+    std::vector<Index> receiver(nodes.size());
+    std::vector<double> length(nodes.size());
+    for (std::size_t at = 0; at < nodes.size(); ++at) {
+        const Index below = graph.receiver[nodes[at]];
+        receiver[at] = below == none ? none : place[below];
+        length[at] = receiver[at] == none ? 0 : graph.length[nodes[at]];
     }
+    terrain::FlowGraph part{.receiver = std::move(receiver), .length = std::move(length), .order = {}};
     for (const Index node : graph.order) {
         if (place[node] != none) part.order.push_back(place[node]);
     }
     return part;
 }
 
-template <class T>
-std::vector<T> at(std::span<const Index> nodes, const std::vector<T>& values) {
+template <class T, class Values>
+std::vector<T> at(std::span<const Index> nodes, const Values& values) {
     std::vector<T> picked;
     picked.reserve(nodes.size());
     for (const Index node : nodes) picked.push_back(values[node]);
@@ -73,16 +76,16 @@ std::vector<T> at(std::span<const Index> nodes, const std::vector<T>& values) {
 }  // namespace
 
 CarvedRivers carved_rivers(const Raster& raster, std::span<const Boundary> boundary, const MeasureOptions& options,
-                           std::vector<double>& cell_area_m2, ConditioningReport& report) {
+                           ConditioningReport& report) {
     RoutedTerrain whole;
-    whole.graph = carved_graph(raster, boundary, report);
-    whole.cell_area_m2 = std::move(cell_area_m2);
-    whole.drainage_area_m2 = terrain::accumulate(whole.graph, whole.cell_area_m2);
+    terrain::GraphAndArea carved = carved_graph(raster, boundary, report);
+    whole.graph = std::move(carved.graph);
+    whole.drainage_area_m2 = std::move(carved.drainage_area_m2);
+    whole.cell_area_m2 = CellAreas(raster.grid);
     whole.complete = terrain::complete_catchments(raster.grid, whole.graph, boundary);
     CarvedRivers rivers;
     rivers.node = with_receivers(whole.graph, possible_channels(whole, options));
     rivers.terrain.cell_area_m2 = at<double>(rivers.node, whole.cell_area_m2);
-    cell_area_m2 = std::move(whole.cell_area_m2);
     rivers.terrain.elevation_m = at<double>(rivers.node, terrain::carve(whole.graph, raster.values));
     rivers.terrain.graph = graph_among(whole.graph, rivers.node);
     rivers.terrain.drainage_area_m2 = at<double>(rivers.node, whole.drainage_area_m2);

@@ -16,9 +16,8 @@ struct CarvedRivers {
     std::vector<Index> node;  ///< of the raster, ascending
 };
 
-/// `cell_area_m2` is lent for the time of the call. Adds pits and flats to the report.
-CarvedRivers carved_rivers(const Raster&, std::span<const Boundary>, const MeasureOptions&,
-                           std::vector<double>& cell_area_m2, ConditioningReport&);
+/// Adds pits and flats to the report.
+CarvedRivers carved_rivers(const Raster&, std::span<const Boundary>, const MeasureOptions&, ConditioningReport&);
 
 /// The options with their channel heads, if there are any, as places in `rivers.node`.
 MeasureOptions on_rivers(const CarvedRivers& rivers, const MeasureOptions&);

@@ -42,7 +42,8 @@ std::vector<double> candidates(double lowest, double highest) {
 }
 
 /// Values at the nodes with data.
-std::vector<double> known(const RoutedTerrain& terrain, const std::vector<double>& values) {
+template <class Values>
+std::vector<double> known(const RoutedTerrain& terrain, const Values& values) {
     std::vector<double> result;
     result.reserve(terrain.graph.order.size());
     for (const Index node : terrain.graph.order) result.push_back(values[node]);

@@ -20,9 +20,9 @@ std::size_t cut_basins(const RasterMeasurement& m) {
     const double from_m2 = std::isnan(c.threshold_area_m2) ? c.source_area_m2[0] : c.threshold_area_m2;
     if (std::isnan(from_m2)) return 0;
     std::size_t cut = 0;
-    for (std::size_t node = 0; node < m.directions.size(); ++node) {
+    for (std::size_t node = 0; node < m.terrain.graph.size(); ++node) {
         const double area_m2 = m.terrain.drainage_area_m2[node];  // 0 without data
-        cut += m.directions[node] == no_flow && area_m2 > 0 && area_m2 >= from_m2 && !m.terrain.complete[node];
+        cut += m.terrain.graph.receiver[node] == none && area_m2 > 0 && area_m2 >= from_m2 && !m.terrain.complete[node];
     }
     return cut;
 }

@@ -203,12 +203,13 @@ double relief_of(const std::vector<double>& elevation_m) {
 }
 
 /// Drainage area by the routing that was asked for, on the surface before it was carved; empty for D8.
-std::vector<double> divided_area(const Grid& grid, std::span<const double> surface, const RasterMeasurement& m,
+std::vector<double> divided_area(const Grid& grid, std::span<const double> surface, const RoutedTerrain& terrain,
                                  Routing routing) {
     if (routing == Routing::d8) return {};
-    const terrain::MultipleFlow flow = routing == Routing::dinf ? terrain::d_infinity(grid, surface, m.directions)
-                                                                : terrain::multiple_flow(grid, surface, m.directions);
-    return terrain::accumulate(flow, m.terrain.cell_area_m2);
+    const FlowDirections& single = terrain.graph.receiver.directions();
+    const terrain::MultipleFlow flow = routing == Routing::dinf ? terrain::d_infinity(grid, surface, single)
+                                                                : terrain::multiple_flow(grid, surface, single);
+    return terrain::accumulate(flow, terrain::cell_areas(grid));
 }
 
 }  // namespace
@@ -311,16 +312,16 @@ ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions& opt
 RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& options) {
     RasterMeasurement m;
     const auto boundary = boundary_of(raster, options, m.conditioning.endorheic_basins);
-    m.terrain.cell_area_m2 = terrain::cell_areas(raster.grid);
-    const CarvedRivers rivers = carved_rivers(raster, boundary, options, m.terrain.cell_area_m2, m.conditioning);
+    m.terrain.cell_area_m2 = CellAreas(raster.grid);
+    const CarvedRivers rivers = carved_rivers(raster, boundary, options, m.conditioning);
 
     Conditioned c = conditioned(raster, boundary, options);
-    m.directions = std::move(c.directions);
     m.conditioning.flat_cells = c.flat_cells;
     std::vector<double> surface = std::move(c.surface_m);
-    m.terrain.graph = terrain::flow_graph(raster.grid, surface, m.directions);
-    m.terrain.drainage_area_m2 = terrain::accumulate(m.terrain.graph, m.terrain.cell_area_m2);
-    m.terrain.divided_area_m2 = divided_area(raster.grid, surface, m, options.routing);
+    terrain::GraphAndArea routed = terrain::graph_and_area(raster.grid, surface, std::move(c.directions));
+    m.terrain.graph = std::move(routed.graph);
+    m.terrain.drainage_area_m2 = std::move(routed.drainage_area_m2);
+    m.terrain.divided_area_m2 = divided_area(raster.grid, surface, m.terrain, options.routing);
     m.terrain.complete = terrain::complete_catchments(raster.grid, m.terrain.graph, boundary);
     if (options.conditioning == Conditioning::carve) surface = terrain::carve(m.terrain.graph, surface);
     report_changes(raster, surface, m.conditioning);

@@ -87,12 +87,10 @@ struct Routed {
 Routed routed(const Raster& raster, const MeasureOptions& options) {
     Index kept = 0;
     const auto boundary = boundary_of(raster, options, kept);
-    const Conditioned c = conditioned(raster, boundary, options);
-    Routed r;
-    r.graph = terrain::flow_graph(raster.grid, c.surface_m, c.directions);
-    r.area_m2 = terrain::accumulate(r.graph, terrain::cell_areas(raster.grid));
-    r.complete = terrain::complete_catchments(raster.grid, r.graph, boundary);
-    return r;
+    Conditioned c = conditioned(raster, boundary, options);
+    auto [graph, area] = terrain::graph_and_area(raster.grid, c.surface_m, std::move(c.directions));
+    const auto complete = terrain::complete_catchments(raster.grid, graph, boundary);
+    return {std::move(graph), std::move(area), complete};
 }
 
 }  // namespace

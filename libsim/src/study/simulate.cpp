@@ -139,7 +139,7 @@ Outcome solve_directly(const Topology& topology, const evolve::River& river, con
 
 /// Rain-weighted area of the trees of single flow.
 std::vector<double> rain_along(const RoutedTerrain& terrain, const evolve::Setting& setting) {
-    std::vector<double> rain = terrain.cell_area_m2;
+    std::vector<double> rain = terrain.cell_area_m2.list();
     for (std::size_t node = 0; node < rain.size(); ++node) rain[node] *= setting.rainfall[node];
     return terrain::accumulate(terrain.graph, rain);
 }

@@ -62,8 +62,7 @@ std::vector<double> drainage_area(const Raster& raster) {
     const std::vector<double> filled = terrain::fill(raster.grid, raster.values, boundary);
     FlowDirections directions = terrain::route(raster.grid, filled, boundary);
     terrain::resolve_flats(raster.grid, filled, boundary, directions);
-    const terrain::FlowGraph graph = terrain::flow_graph(raster.grid, filled, directions);
-    return terrain::accumulate(graph, terrain::cell_areas(raster.grid));
+    return terrain::graph_and_area(raster.grid, filled, std::move(directions)).drainage_area_m2;
 }
 
 /// As elsewhere, but never under 50 cells: on a small DEM a share of its area is a cell or two, and all would be water.

@@ -19,7 +19,7 @@ template <class Give>
 void part_down(const FlowGraph& graph, Index begin, Index end, Index first, Index size, const Give& give,
                std::vector<Index>& crossing) {
     for (Index at = end; at-- > begin;) {
-        if (at >= begin + ahead) __builtin_prefetch(&graph.receiver[graph.order[at - ahead]]);
+        if (at >= begin + ahead) graph.receiver.fetch(graph.order[at - ahead]);
         const Index node = graph.order[at];
         const Index receiver = graph.receiver[node];
         if (receiver - first < size) {

@@ -2,38 +2,16 @@
 #include "thalweg/terrain/graph.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
+#include <memory>
 
 #include "terrain/check_sizes.hpp"
 #include "terrain/downhill.hpp"
 #include "terrain/layered_order.hpp"
-#include "terrain/row_lengths.hpp"
 #include "thalweg/core/parallel.hpp"
 
 namespace thalweg::terrain {
 namespace {
-
-void write_lengths(const Mesh& mesh, const FlowDirections& directions, std::vector<double>& length) {
-    parallel_for(0, mesh.size(), [&](Index first, Index last) {
-        for (Index node = first; node < last; ++node) {
-            if (directions[node] != no_flow) length[node] = mesh.length(node, directions[node]);
-        }
-    });
-}
-
-/// By rows, whose eight lengths are looked up once.
-void write_lengths(const Grid& grid, const FlowDirections& directions, std::vector<double>& length) {
-    const auto rows = [&](Index first_row, Index last_row) {
-        for (Index row = first_row; row < last_row; ++row) {
-            const std::size_t first = std::size_t{row} * grid.cols;
-            const std::array<double, 8> of_slot = row_lengths(grid, row);
-            for (std::size_t node = first; node < first + grid.cols; ++node) {
-                if (directions[node] != no_flow) length[node] = of_slot[directions[node]];
-            }
-        }
-    };
-    parallel_for(0, grid.rows, rows, std::max<Index>(1, 16384 / grid.cols));
-}
 
 template <Topology T>
 std::vector<Index> order_nodes(const T& topology, std::span<const double> elevation_m,
@@ -46,22 +24,33 @@ std::vector<Index> order_nodes(const T& topology, std::span<const double> elevat
     return order;
 }
 
-template <Topology T>
-FlowGraph make_graph(const T& topology, std::span<const double> elevation_m, const FlowDirections& directions) {
-    check_sizes(topology.size(), elevation_m.size(), directions.size());
-    FlowGraph graph{.receiver = std::vector<Index>(topology.size(), none),
-                    .length = std::vector<double>(topology.size(), 0.0),
-                    .order = {}};
+/// Nodes in order, with pass(donor, receiver) called along the way.
+template <class Pass>
+FlowGraph grid_graph(const Grid& grid, std::span<const double> elevation_m, FlowDirections directions,
+                     const Pass& pass) {
+    check_sizes(grid.size(), elevation_m.size(), directions.size());
     OrderBuffers buffers;
-    order_by_layers(topology, elevation_m, directions, buffers, graph.order, graph.layers, [](Index, Index) {});
-    const auto neighbor = downhill(topology);
-    parallel_for(0, topology.size(), [&](Index first, Index last) {
-        for (Index node = first; node < last; ++node) {
-            if (directions[node] != no_flow) graph.receiver[node] = neighbor(node, directions[node]);
-        }
-    });
-    write_lengths(topology, directions, graph.length);
+    FlowGraph graph;
+    order_by_layers(grid, elevation_m, directions, buffers, graph.order, graph.layers, pass);
+    const auto shared = std::make_shared<const FlowDirections>(std::move(directions));
+    graph.receiver = Receivers(grid, shared);
+    graph.length = ReceiverLengths(grid, shared);
     return graph;
+}
+
+/// What each cell has before anything flows.
+std::vector<double> own_areas(const Grid& grid, std::span<const double> elevation_m) {
+    check_sizes(grid.size(), elevation_m.size(), elevation_m.size());
+    std::vector<double> area(grid.size());
+    const auto rows = [&](Index first, Index last) {
+        for (std::size_t row = first; row < last; ++row) {
+            for (std::size_t node = row * grid.cols; node < (row + 1) * grid.cols; ++node) {
+                area[node] = std::isnan(elevation_m[node]) ? 0 : grid.cell_area[row];
+            }
+        }
+    };
+    parallel_for(0, grid.rows, rows, std::max<Index>(1, 65536 / grid.cols));
+    return area;
 }
 
 }  // namespace
@@ -76,12 +65,34 @@ std::vector<Index> downstream_first_order(const Mesh& mesh, std::span<const doub
     return order_nodes(mesh, elevation_m, directions);
 }
 
-FlowGraph flow_graph(const Grid& grid, std::span<const double> elevation_m, const FlowDirections& directions) {
-    return make_graph(grid, elevation_m, directions);
+FlowGraph flow_graph(const Grid& grid, std::span<const double> elevation_m, FlowDirections directions) {
+    return grid_graph(grid, elevation_m, std::move(directions), [](Index, Index) {});
 }
 
 FlowGraph flow_graph(const Mesh& mesh, std::span<const double> elevation_m, const FlowDirections& directions) {
-    return make_graph(mesh, elevation_m, directions);
+    check_sizes(mesh.size(), elevation_m.size(), directions.size());
+    OrderBuffers buffers;
+    FlowGraph graph;
+    order_by_layers(mesh, elevation_m, directions, buffers, graph.order, graph.layers, [](Index, Index) {});
+    std::vector<Index> receiver(mesh.size(), none);
+    std::vector<double> length(mesh.size(), 0);
+    parallel_for(0, mesh.size(), [&](Index first, Index last) {
+        for (Index node = first; node < last; ++node) {
+            if (directions[node] == no_flow) continue;
+            receiver[node] = mesh.neighbor(node, directions[node]);
+            length[node] = mesh.length(node, directions[node]);
+        }
+    });
+    graph.receiver = std::move(receiver);
+    graph.length = std::move(length);
+    return graph;
+}
+
+GraphAndArea graph_and_area(const Grid& grid, std::span<const double> elevation_m, FlowDirections directions) {
+    std::vector<double> area = own_areas(grid, elevation_m);
+    const auto give = [&](Index donor, Index receiver) { area[receiver] += area[donor]; };
+    FlowGraph graph = grid_graph(grid, elevation_m, std::move(directions), give);
+    return {std::move(graph), std::move(area)};
 }
 
 }  // namespace thalweg::terrain

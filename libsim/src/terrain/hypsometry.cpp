@@ -193,7 +193,7 @@ void check_points(int points) {
 
 }  // namespace
 
-Hypsometry hypsometry(std::span<const double> elevation_m, std::span<const double> cell_area_m2, int points) {
+Hypsometry hypsometry(std::span<const double> elevation_m, const CellAreas& cell_area_m2, int points) {
     check_sizes(static_cast<Index>(elevation_m.size()), elevation_m.size(), cell_area_m2.size());
     check_points(points);
     const auto cells = [&](auto visit) {
@@ -204,7 +204,7 @@ Hypsometry hypsometry(std::span<const double> elevation_m, std::span<const doubl
     return hypsometry_of(cells, points);
 }
 
-std::vector<Hypsometry> hypsometries(std::span<const double> elevation_m, std::span<const double> cell_area_m2,
+std::vector<Hypsometry> hypsometries(std::span<const double> elevation_m, const CellAreas& cell_area_m2,
                                      std::span<const Index> offset, std::span<const Index> nodes, int points) {
     check_sizes(static_cast<Index>(elevation_m.size()), elevation_m.size(), cell_area_m2.size());
     check_points(points);

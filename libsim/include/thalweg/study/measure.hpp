@@ -19,6 +19,7 @@
 #include "thalweg/channel/profile.hpp"
 #include "thalweg/channel/slope_area.hpp"
 #include "thalweg/channel/tokunaga.hpp"
+#include "thalweg/core/cell_areas.hpp"
 #include "thalweg/core/raster.hpp"
 #include "thalweg/terrain/basins.hpp"
 #include "thalweg/terrain/breach.hpp"
@@ -85,7 +86,7 @@ struct MeasureOptions {
 struct RoutedTerrain {
     terrain::FlowGraph graph;
     std::vector<double> elevation_m;  ///< on which the flow falls (filled or carved); NaN: no data
-    std::vector<double> cell_area_m2;
+    CellAreas cell_area_m2;
     std::vector<double> drainage_area_m2;   ///< of the graph's trees
     std::vector<double> divided_area_m2{};  ///< where flow divides, along that flow; else empty
     std::vector<std::uint8_t> complete;     ///< 1 where the whole upslope area is known
@@ -223,7 +224,6 @@ struct ConditioningReport {
 /// A measured DEM with the rasters that the measuring made.
 struct RasterMeasurement {
     RoutedTerrain terrain;
-    FlowDirections directions;
     ConditioningReport conditioning;
     Index valid_cells = 0;
     double area_m2 = 0;

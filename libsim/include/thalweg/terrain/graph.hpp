@@ -6,6 +6,7 @@
 
 #include "thalweg/core/grid.hpp"
 #include "thalweg/core/mesh.hpp"
+#include "thalweg/terrain/receivers.hpp"
 
 namespace thalweg::terrain {
 
@@ -20,10 +21,10 @@ struct FlowLayers {
 /// Where all water goes: from here on the geometry is not needed, and a DEM, a simulated mesh and a grown network look
 /// the same to every statistic.
 struct FlowGraph {
-    std::vector<Index> receiver;  ///< per node; `none` at outlets and nodes without data
-    std::vector<double> length;   ///< per node: distance to the receiver (m); 0 where there is none
-    std::vector<Index> order;     ///< every node with data once, each after its receiver
-    FlowLayers layers = {};       ///< of the order; empty where nobody knows them
+    Receivers receiver;        ///< per node; `none` at outlets and nodes without data
+    ReceiverLengths length;    ///< per node: distance to the receiver (m); 0 where there is none
+    std::vector<Index> order;  ///< every node with data once, each after its receiver
+    FlowLayers layers = {};    ///< of the order; empty where nobody knows them
 
     Index size() const { return static_cast<Index>(receiver.size()); }
 
@@ -40,7 +41,16 @@ std::vector<Index> downstream_first_order(const Grid&, std::span<const double> e
 std::vector<Index> downstream_first_order(const Mesh&, std::span<const double> elevation_m, const FlowDirections&);
 
 /// The directions of a topology as a graph.
-FlowGraph flow_graph(const Grid&, std::span<const double> elevation_m, const FlowDirections&);
+FlowGraph flow_graph(const Grid&, std::span<const double> elevation_m, FlowDirections);
 FlowGraph flow_graph(const Mesh&, std::span<const double> elevation_m, const FlowDirections&);
+
+/// A graph and the drainage area (m²) of each of its nodes; 0 without data.
+struct GraphAndArea {
+    FlowGraph graph;
+    std::vector<double> drainage_area_m2;
+};
+
+/// `flow_graph` of a grid, and `accumulate` of its cells' areas in the same walk: the same numbers in less time.
+GraphAndArea graph_and_area(const Grid&, std::span<const double> elevation_m, FlowDirections);
 
 }  // namespace thalweg::terrain
