@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 #include <queue>
 
 #include "grow/plane.hpp"
@@ -36,22 +37,21 @@ class Pieces {
                              .inner = static_cast<Index>(count) - 1});
             next += count - 1;
         }
-        by_ends_ = line_;
-        std::sort(by_ends_.begin(), by_ends_.end(), [](const Line& a, const Line& b) { return a.ends() < b.ends(); });
+        sort_by_lower_end(network);
     }
 
     struct Line {
         Index from, to, first, inner;
-        std::pair<Index, Index> ends() const { return std::minmax(from, to); }
+        Index lower_end() const { return std::min(from, to); }
     };
 
     const Line& line(std::size_t edge) const { return line_[edge]; }
 
     /// Appends the vertices from a up to, but without, b.
     void append(Index a, Index b, std::vector<Index>& vertices) const {
-        const std::pair<Index, Index> ends = std::minmax(a, b);
-        const auto at = std::lower_bound(by_ends_.begin(), by_ends_.end(), ends,
-                                         [](const Line& line, const auto& wanted) { return line.ends() < wanted; });
+        const auto [lower, upper] = std::minmax(a, b);
+        auto at = by_lower_end_.begin() + offset_[lower];
+        while (std::max(at->from, at->to) != upper) ++at;  // few lines meet in a vertex
         vertices.push_back(a);
         for (Index i = 0; i < at->inner; ++i) {
             vertices.push_back(at->first + (at->from == a ? i : at->inner - 1 - i));
@@ -59,7 +59,17 @@ class Pieces {
     }
 
   private:
-    std::vector<Line> line_, by_ends_;
+    void sort_by_lower_end(const Network& network) {
+        offset_.assign(network.vertices.size() + 1, 0);
+        for (const Line& line : line_) ++offset_[line.lower_end() + 1];
+        std::partial_sum(offset_.begin(), offset_.end(), offset_.begin());
+        std::vector<Index> next = offset_;
+        by_lower_end_.resize(line_.size());
+        for (const Line& line : line_) by_lower_end_[next[line.lower_end()]++] = line;
+    }
+
+    std::vector<Line> line_, by_lower_end_;
+    std::vector<Index> offset_;  ///< per vertex, into the latter
 };
 
 void cut_edges(const Network& network, const Pieces& pieces, Network& cut) {
@@ -118,13 +128,34 @@ Neighbors neighbors_of(const SurfaceMesh& mesh) {
     return n;
 }
 
+/// Height to which a vertex lowers its neighbour, no steeper than `steepest` and not under its least height; infinite
+/// if the neighbour is not too high.
+double lowered(const SurfaceMesh& mesh, const std::vector<double>& least, double steepest, Index from, Index to) {
+    const double dx = mesh.x[to] - mesh.x[from];
+    const double dy = mesh.y[to] - mesh.y[from];
+    const double surely = 0.999999 * std::max(std::abs(dx), std::abs(dy));  // no longer than the distance, and quicker
+    if (mesh.height[to] - mesh.height[from] < steepest * surely) return std::numeric_limits<double>::infinity();
+    const double most = std::max(least[to], mesh.height[from] + steepest * std::hypot(dx, dy));
+    return most < mesh.height[to] ? most : std::numeric_limits<double>::infinity();
+}
+
+/// Whether it lowers any neighbour.
+bool lowers(const SurfaceMesh& mesh, const std::vector<double>& least, double steepest, const Neighbors& neighbors,
+            Index from) {
+    return std::any_of(neighbors.list.begin() + neighbors.offset[from],
+                       neighbors.list.begin() + neighbors.offset[from + 1],
+                       [&](Index to) { return lowered(mesh, least, steepest, from, to) < mesh.height[to]; });
+}
+
 /// Lowers what rises more steeply from a neighbour than any valley side does, but nothing under its least height: from
-/// the lowest vertex up, each is looked at when nothing can lower it any more.
+/// the lowest vertex that lowers another up, each is looked at when nothing can lower it any more.
 void limit_slopes(const std::vector<double>& least, double steepest, SurfaceMesh& mesh) {
     const Neighbors neighbors = neighbors_of(mesh);
     using Waiting = std::pair<double, Index>;
     std::vector<Waiting> first;
-    for (Index i = 0; i < mesh.size(); ++i) first.emplace_back(mesh.height[i], i);
+    for (Index i = 0; i < mesh.size(); ++i) {
+        if (lowers(mesh, least, steepest, neighbors, i)) first.emplace_back(mesh.height[i], i);
+    }
     std::priority_queue queue(std::greater<Waiting>{}, std::move(first));
     while (!queue.empty()) {
         const auto [height, from] = queue.top();
@@ -132,8 +163,7 @@ void limit_slopes(const std::vector<double>& least, double steepest, SurfaceMesh
         if (height != mesh.height[from]) continue;  // lowered since
         for (Index at = neighbors.offset[from]; at < neighbors.offset[from + 1]; ++at) {
             const Index to = neighbors.list[at];
-            const double distance = std::hypot(mesh.x[to] - mesh.x[from], mesh.y[to] - mesh.y[from]);
-            const double most = std::max(least[to], height + steepest * distance);
+            const double most = lowered(mesh, least, steepest, from, to);
             if (!(most < mesh.height[to])) continue;
             mesh.height[to] = most;
             queue.emplace(most, to);
@@ -207,6 +237,8 @@ SurfaceMesh surface_mesh(const Network& network, const Flint& flint, double base
         surface.x.push_back(p.x);
         surface.y.push_back(p.y);
     }
+    // Along the curve as the points are, so that neighbours in space are near each other in memory.
+    std::sort(lines.begin(), lines.end());
     surface.triangles = mesh::triangulate_lines(points, lines);
     set_channel_slopes(cut, ranges, surface);
     limit_slopes(least, steepest_side(network), surface);

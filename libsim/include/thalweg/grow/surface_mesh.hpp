@@ -41,7 +41,7 @@ struct SurfaceMesh {
 /// valley sides allow all along, not a straight line between its ends. Where side by side one polygon allows much more
 /// than the next, that would make walls, over which no smooth surface goes: so no vertex is higher than the steepest
 /// valley side of all rises to it from any neighbour, unless it must be to lie above its channels. Vertices are
-/// numbered along a Hilbert curve. Cost: about 2 µs per vertex. Throws Error as `subdivided`.
+/// numbered along a Hilbert curve. Cost: about 1 µs per vertex. Throws Error as `subdivided`.
 SurfaceMesh surface_mesh(const Network&, const Flint&, double base_level_m, double longest_m);
 
 }  // namespace thalweg::grow
