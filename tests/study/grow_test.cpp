@@ -14,7 +14,9 @@
 #include "thalweg/io/vector_file.hpp"
 #include "thalweg/study/output_folder.hpp"
 #include "thalweg/study/simulate.hpp"
+#include "thalweg/study/tables.hpp"
 #include "thalweg/study/tree_statistics.hpp"
+#include "thalweg/surface/roughness.hpp"
 
 using namespace thalweg;
 using namespace thalweg::study;
@@ -93,6 +95,7 @@ TEST_CASE("What is grown is written whole, and its summary holds tree and terrai
 TEST_CASE("The same experiment grows the same terrain to the last bit, whatever the threads") {
     Experiment e = small_growth();
     e.growth.roughness_m = 3;
+    e.growth.roughness_kind = GENERATE(RoughnessKind::noise, RoughnessKind::subdivision);
     const TempFolder folder;
     std::vector<Json> summaries;
     std::vector<std::vector<double>> heights;
@@ -163,6 +166,64 @@ TEST_CASE("Roughness leaves channels alone, extra tension and width change what 
     tight.growth.extra_tension_divide = 0;
     tight.growth.extra_tension_channel = 50;
     CHECK(quantile(changed(tight), 1) > 1e-3);
+}
+
+TEST_CASE("Fractal roughness displaces no channel, roughens valley sides as far up, and rivers stay where they are") {
+    Experiment e = small_growth();
+    e.output.resolution = 500;
+    const GrownTerrain plain = grown(e);
+    e.growth.roughness_m = 8;
+    e.growth.roughness_kind = RoughnessKind::subdivision;
+    const GrownTerrain rough = grown(e);
+    const grow::SurfaceMesh& mesh = rough.surface.mesh;
+    Mesh plane;
+    plane.x = mesh.x;
+    plane.y = mesh.y;
+    plane.triangles = mesh.triangles;
+    std::vector<double> share;
+    for (const std::uint8_t channel : mesh.on_channel) share.push_back(1 - channel);
+    std::vector<Point> along;
+    for (const grow::Edge& line : mesh.lines) {
+        if (line.kind != grow::EdgeKind::channel) continue;
+        for (const double s : {0.1, 0.37, 0.5, 0.82}) {
+            along.push_back({mesh.x[line.from] + s * (mesh.x[line.to] - mesh.x[line.from]),
+                             mesh.y[line.from] + s * (mesh.y[line.to] - mesh.y[line.from])});
+        }
+    }
+    REQUIRE(along.size() > 1000);
+    for (const double z : surface::roughness_at(plane, share, {.amplitude_m = 8, .finest_m = 5}, along)) {
+        REQUIRE(std::abs(z) < 1e-9);  // a place on a line is there to rounding
+    }
+    double squares = 0, cells = 0;
+    for (std::size_t i = 0; i < rough.elevation.values.size(); ++i) {
+        if (std::isnan(rough.elevation.values[i])) continue;
+        squares += std::pow(rough.elevation.values[i] - plain.elevation.values[i], 2);
+        ++cells;
+    }
+    const double rms = std::sqrt(squares / cells);
+    CHECK(rms > 0.3);
+    CHECK(rms < 4);
+    MeasureOptions options = measure_options(rough);
+    options.heads = grown_heads(rough);
+    options.channels = ChannelRule::heads;
+    const RasterMeasurement m = measure_raster(rough.elevation, options);
+    std::vector<Point> junctions;
+    for (const grow::Junction& j : rough.growth.network.junctions) {
+        const Point& p = rough.growth.network.vertices[j.vertex];
+        junctions.push_back({p.x + rough.growth.network.origin.x, p.y + rough.growth.network.origin.y});
+    }
+    const double cell = rough.elevation.placement.cell_width;
+    const Recovery r = recovery(junctions, grow::total_length(rough.growth.network), m.statistics.network,
+                                positions(rough.elevation), 2 * cell);
+    CHECK(r.recovered >= 0.9 * r.grown);
+    e.growth.roughness_finest_m = 1000;  // beyond the triangles' edges: nothing to divide
+    CHECK(grown(e).elevation.values.size() == plain.elevation.values.size());
+    double most = 0;
+    const auto none_left = grown(e).elevation.values;
+    for (std::size_t i = 0; i < none_left.size(); ++i) {
+        if (!std::isnan(none_left[i])) most = std::max(most, std::abs(none_left[i] - plain.elevation.values[i]));
+    }
+    CHECK(most == 0);
 }
 
 TEST_CASE("A grown terrain is the start of a simulation on the same outline") {

@@ -14,6 +14,7 @@
 #include "thalweg/study/channel_heads.hpp"
 #include "thalweg/study/grow.hpp"
 #include "thalweg/surface/heightfield.hpp"
+#include "thalweg/surface/roughness.hpp"
 
 namespace thalweg::study {
 namespace {
@@ -88,6 +89,17 @@ Raster evaluated(const Experiment& e, const GrownSurface& s, const grow::Dials& 
     Raster raster = surface::covering_raster(plane, e.output.resolution.value_or(usual_resolution));
     surface::evaluate(s.tension_mesh(), s.patches, raster);
     if (!(e.growth.roughness_m > 0)) return raster;
+    if (e.growth.roughness_kind == RoughnessKind::subdivision) {
+        const double finest_m = e.growth.roughness_finest_m.value_or(raster.grid.east_west[0]);
+        surface::add_roughness(plane, ridge_share(s.mesh),
+                               {.amplitude_m = e.growth.roughness_m,
+                                .reference_m = surface_spacing_m(dials),
+                                .hurst = e.growth.roughness_hurst,
+                                .finest_m = finest_m,
+                                .seed = dials.seed ^ roughness_seed},
+                               raster);
+        return raster;
+    }
     Raster share = raster;
     surface::interpolate_linear(plane, ridge_share(s.mesh), share);
     std::vector<Point> centers;

@@ -421,6 +421,10 @@ const Words<FitMethod>& words(FitMethod) {
     static const Words<FitMethod> all{{"slope-area", FitMethod::slope_area}};
     return all;
 }
+const Words<RoughnessKind>& words(RoughnessKind) {
+    static const Words<RoughnessKind> all{{"noise", RoughnessKind::noise}, {"subdivision", RoughnessKind::subdivision}};
+    return all;
+}
 const Words<grow::Stop>& words(grow::Stop) {
     static const Words<grow::Stop> all{{"density", grow::Stop::density}, {"links", grow::Stop::links}};
     return all;

@@ -37,6 +37,12 @@ enum class MeshFile { obj, ply };
 enum class FitMethod { slope_area };
 enum class StudyModel { stream_power, growth };
 
+/// Small roughness of a grown terrain.
+enum class RoughnessKind : std::uint8_t {
+    noise,       ///< five octaves of noise from half C down
+    subdivision  ///< recursive subdivision of the surface's triangles, a fractal
+};
+
 /// Which nodes of the rim are outlets.
 struct Outlets {
     OutletRule rule = OutletRule::all;
@@ -147,6 +153,9 @@ struct Experiment {
         double channel_width_m = 0;        ///< of exterior links
         double channel_width_exponent = 0.5;
         double roughness_m = 0;
+        RoughnessKind roughness_kind = RoughnessKind::noise;
+        double roughness_hurst = 0.7;
+        std::optional<double> roughness_finest_m;  ///< default: a cell of the raster
     } growth;
     struct {
         std::optional<std::filesystem::path> dem;
@@ -190,6 +199,7 @@ const Words<HeightmapFile>& words(HeightmapFile);
 const Words<MeshFile>& words(MeshFile);
 const Words<FitMethod>& words(FitMethod);
 const Words<StudyModel>& words(StudyModel);
+const Words<RoughnessKind>& words(RoughnessKind);
 const Words<grow::Stop>& words(grow::Stop);
 const Words<grow::Divides>& words(grow::Divides);
 const Words<grow::UpstreamLink>& words(grow::UpstreamLink);
@@ -294,6 +304,17 @@ void describe_growth(AnyExperiment& e, Visit& visit) {
           g.channel_width_exponent);
     visit(Field{"growth.roughness_m", "m", "height of the surface's small roughness; 0: none", 0, infinity},
           g.roughness_m);
+    visit(
+        Field{"growth.roughness_kind", "", "octaves of noise, or a fractal by subdivision of the surface's triangles"},
+        g.roughness_kind);
+    visit(Field{"growth.roughness_hurst", "",
+                "of subdivision: exponent of differences in height with distance, 1: smooth, 0: jagged", 0.01, 0.99},
+          g.roughness_hurst);
+    visit(Field{"growth.roughness_finest_m", "m",
+                "of subdivision: edges up to that length are not divided further; "
+                "default a cell of the raster",
+                0, infinity, true},
+          g.roughness_finest_m);
 }
 
 /// Calls visit(field, member) for every parameter, in the order of the file.
