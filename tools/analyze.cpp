@@ -29,6 +29,8 @@ struct Options {
     OutletOptions outlet;
     std::string file, theta, knickpoint_prominence, heads, channels, slope_area;
     std::string breach_depth, breach_length, endorheic_depth, endorheic_area, endorheic_points;
+    bool derivatives = false;
+    std::string relief_radius;
     std::string conditioning = "fill";
     std::string routing = "d8";
 };
@@ -69,10 +71,18 @@ void choose_conditioning(const Options& options, study::MeasureOptions& measure)
     measure.endorheic.area_m2 = given("--endorheic-area-m2", options.endorheic_area);
 }
 
+void choose_derivatives(const Options& options, study::MeasureOptions& measure) {
+    if (options.derivatives) measure.derivatives.emplace();
+    if (options.relief_radius.empty()) return;
+    if (!options.derivatives) throw Error("--relief-radius-m is for --derivatives, which is not asked for");
+    measure.derivatives->relief_radius_m = parse_number("--relief-radius-m", options.relief_radius, Sign::positive);
+}
+
 void run(const Options& options) {
     study::MeasureOptions measure = measure_options(options.dem);
     choose_channels(options, measure);
     choose_conditioning(options, measure);
+    choose_derivatives(options, measure);
     measure.routing = routings.at(options.routing);
     if (!options.theta.empty()) measure.theta = parse_number("--theta", options.theta, Sign::positive);
     if (!options.knickpoint_prominence.empty()) {
@@ -133,6 +143,10 @@ void add_analyze(CLI::App& app) {
     command->add_option("--knickpoint-prominence-m", options->knickpoint_prominence,
                         "height above the steepest concave profile from which a place is a knickpoint [default: 5 % of "
                         "the rivers' relief]");
+    command->add_flag("--derivatives", options->derivatives,
+                      "also write slope, aspect, curvatures, hillshade, roughness and local relief");
+    command->add_option("--relief-radius-m", options->relief_radius,
+                        "with --derivatives: radius of local relief [default: ten cells, rounded to 1, 2 or 5]");
     add_outlet_options(*command, options->outlet);
     add_dem_options(*command, options->dem);
     add_common_options(*command, options->common, "analysis");

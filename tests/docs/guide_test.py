@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything the program writes or takes is defined in the user guide: guide_test.py THALWEG SOURCE_FOLDER
 
-Runs the embedded study, a fit of growth, and looks for each file, JSON key, CSV column, GeoPackage column, option and experiment key
+Runs the embedded study, a fit of growth, an analysis with derivatives, and looks for each file, JSON key, CSV column, GeoPackage column, option and experiment key
 between backticks in docs/guide.md; and for the experiment keys the other way round.
 """
 import json
@@ -96,7 +96,10 @@ def main():
         growth = Path(folder) / "growth"
         subprocess.run([THALWEG, "fit", SOURCE / "validation" / "data" / "jacksboro.tif", "--method", "growth", "--out",
                         growth, "--no-figures", "--quiet"], check=True)
-        words = {**written_words(study), **written_words(growth), **taken_words()}
+        derived = Path(folder) / "derived"
+        subprocess.run([THALWEG, "analyze", SOURCE / "validation" / "data" / "jacksboro.tif", "--derivatives", "--out",
+                        derived, "--no-figures", "--quiet"], check=True)
+        words = {**written_words(study), **written_words(growth), **written_words(derived), **taken_words()}
     missing = {word: where for word, where in words.items() if word not in guide}
     for word, where in sorted(missing.items()):
         print(f"docs/guide.md does not define {word} ({where})")

@@ -63,26 +63,6 @@ OGRSpatialReference system_of(const std::string& text) {
     return system;
 }
 
-/// A dataset over the raster's own values.
-DatasetPtr dataset_over(const Raster& raster) {
-    GDALDriver* memory = GetGDALDriverManager()->GetDriverByName("MEM");
-    const int cols = static_cast<int>(raster.grid.cols), rows = static_cast<int>(raster.grid.rows);
-    DatasetPtr dataset(memory->Create("", cols, rows, 1, GDT_Float64, nullptr));
-    if (!dataset) throw std::bad_alloc();
-    const Placement& p = raster.placement;
-    std::array<double, 6> transform{p.west, p.cell_width, 0, p.north, 0, -p.cell_height};
-    dataset->SetGeoTransform(transform.data());
-    dataset->SetProjection(p.crs_wkt.c_str());
-    GDALRasterBand& band = *dataset->GetRasterBand(1);
-    band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
-    band.SetUnitType("m");
-    void* const read_only = const_cast<double*>(raster.values.data());  // one function reads and writes
-    if (band.RasterIO(GF_Write, 0, 0, cols, rows, read_only, cols, rows, GDT_Float64, 0, 0, nullptr) != CE_None) {
-        throw std::bad_alloc();
-    }
-    return dataset;
-}
-
 double mean_step(const std::vector<double>& steps) {
     double sum = 0;
     for (const double step : steps) sum += step;
@@ -115,6 +95,25 @@ CPLStringList warp_arguments(const Raster& raster, const std::string& name, cons
 }
 
 }  // namespace
+
+DatasetPtr dataset_over(const Raster& raster) {
+    GDALDriver* memory = GetGDALDriverManager()->GetDriverByName("MEM");
+    const int cols = static_cast<int>(raster.grid.cols), rows = static_cast<int>(raster.grid.rows);
+    DatasetPtr dataset(memory->Create("", cols, rows, 1, GDT_Float64, nullptr));
+    if (!dataset) throw std::bad_alloc();
+    const Placement& p = raster.placement;
+    std::array<double, 6> transform{p.west, p.cell_width, 0, p.north, 0, -p.cell_height};
+    dataset->SetGeoTransform(transform.data());
+    dataset->SetProjection(p.crs_wkt.c_str());
+    GDALRasterBand& band = *dataset->GetRasterBand(1);
+    band.SetNoDataValue(std::numeric_limits<double>::quiet_NaN());
+    band.SetUnitType("m");
+    void* const read_only = const_cast<double*>(raster.values.data());  // one function reads and writes
+    if (band.RasterIO(GF_Write, 0, 0, cols, rows, read_only, cols, rows, GDT_Float64, 0, 0, nullptr) != CE_None) {
+        throw std::bad_alloc();
+    }
+    return dataset;
+}
 
 DatasetPtr window_of(GDALDataset& dataset, const std::string& name, const ReadOptions& options) {
     if (options.band < 1 || options.band > dataset.GetRasterCount()) {

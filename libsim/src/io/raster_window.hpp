@@ -13,6 +13,9 @@ namespace thalweg::io {
 /// long as the view. Throws Error for a band that is not there and a window beside the raster.
 DatasetPtr window_of(GDALDataset&, const std::string& name, const ReadOptions&);
 
+/// A copy of the raster in GDAL's memory, NaN being no data.
+DatasetPtr dataset_over(const Raster&);
+
 /// The raster on the cells that the options ask for, in memory: in another coordinate system, or with cells of another
 /// size, by GDAL's warper. Heights are bilinear between cells or, where the new cells are twice as wide or more, means over them; voids
 /// take part in neither. Throws Error for a system that GDAL does not know.

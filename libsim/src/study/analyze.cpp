@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "study/derivative_rasters.hpp"
 #include "study/ingest.hpp"
 #include "study/layer_styles.hpp"
 #include "study/report_json.hpp"
@@ -175,8 +176,13 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
     for (const std::string& note : notes) {
         if (note.starts_with("channels:")) messages.warning(note);
     }
-    summary["notes"] = notes;
     messages.progress("writing");
+    if (options.derivatives) {
+        summary["derivatives"] = write_derivatives(dem.raster, *options.derivatives, folder);
+        explain_null("derivatives", summary["derivatives"],
+                     "no cell has all eight neighbours, or the surface is level where they are", notes);
+    }
+    summary["notes"] = notes;
     write_rasters(dem.raster, m, folder);
     write_tables(dem.raster, m.statistics, folder);
     std::string text = text_of(summary);

@@ -222,8 +222,9 @@ double data_area(const Raster& raster) {
     return area;
 }
 
-double default_channel_area(double area_m2) {
-    const double target = 1e-3 * area_m2;
+double default_channel_area(double area_m2) { return rounded_to_1_2_5(1e-3 * area_m2); }
+
+double rounded_to_1_2_5(double target) {
     const double decade = std::pow(10.0, std::floor(std::log10(target)));
     double best = decade;
     for (const double candidate : {2 * decade, 5 * decade, 10 * decade}) {

@@ -66,6 +66,11 @@ struct Endorheic {
     bool wanted() const { return depth_m || area_m2 || !cells.empty(); }
 };
 
+/// Rasters of the surface's shape, written beside the others.
+struct DerivativeOptions {
+    std::optional<double> relief_radius_m{};  ///< default: ten cells, rounded to 1-2-5
+};
+
 struct MeasureOptions {
     Conditioning conditioning = Conditioning::fill;
     terrain::BreachLimits breach_limits{};
@@ -80,6 +85,7 @@ struct MeasureOptions {
                                                       ///< rim is a divide, not a cut
     double theta = 0.45;                              ///< concavity for chi and ksn
     std::optional<double> knickpoint_prominence_m{};  ///< default: 5 % of the rivers' relief, at least a segment's drop
+    std::optional<DerivativeOptions> derivatives{};   ///< none: not written
 };
 
 /// A terrain once it is routed: a DEM, a simulated mesh and a grown network look the same from here on.
@@ -238,6 +244,9 @@ RasterMeasurement measure_raster(const Raster&, const MeasureOptions&);
 
 /// Area of the cells with data, m².
 double data_area(const Raster&);
+
+/// The nearest, in the logarithm, of 1, 2 and 5 times powers of ten.
+double rounded_to_1_2_5(double target);
 
 /// The threshold of channels by default: 0.1 % of the area rounded to 1, 2 or 5 times a power of ten.
 double default_channel_area(double area_m2);
