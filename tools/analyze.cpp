@@ -94,7 +94,7 @@ void run(const Options& options) {
     run_into_folder(options.common, "analyze", [&](const auto& folder, const study::Messages& m) {
         study::NamedRaster dem = study::read_dem(options.file, read, m);
         if (!options.endorheic_points.empty()) {
-            measure.endorheic.cells = study::read_channel_heads(options.endorheic_points, dem.raster, m).cells;
+            measure.endorheic.cells = study::read_cells(options.endorheic_points, {}, dem.raster, m).cells;
         }
         if (outlet) dem = study::cut_to_outlet(dem, *outlet, measure, m);
         if (!options.heads.empty()) measure.heads = study::read_channel_heads(options.heads, dem.raster, m);

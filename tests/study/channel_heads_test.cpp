@@ -117,3 +117,14 @@ TEST_CASE("Heads in another coordinate system are transformed to the terrain's",
     io::write_geopackage(temp / "heads.gpkg", {table}, elsewhere.crs_wkt());
     CHECK(read_channel_heads(temp / "heads.gpkg", raster, {}).cells == cells);
 }
+
+TEST_CASE("Heads are read from the layer of sources where there is one, other points from all layers", "[heads]") {
+    const TempFolder temp;
+    const Raster raster = drawn_catchment();
+    Table lakes{"lakes", {{"id", std::vector<double>{1}}}, GeometryKind::point, {{raster.placement.center(2, 4)}}};
+    Table sources{"sources", {{"id", std::vector<double>{1}}}, GeometryKind::point, {{raster.placement.center(1, 4)}}};
+    io::write_geopackage(temp / "both.gpkg", {lakes, sources}, "");
+    CHECK(read_channel_heads(temp / "both.gpkg", raster, {}).cells == std::vector<Index>{1 * 8 + 4});
+    CHECK(read_cells(temp / "both.gpkg", {}, raster, {}).cells == std::vector<Index>{1 * 8 + 4, 2 * 8 + 4});
+    CHECK(read_cells(temp / "both.gpkg", {"lakes"}, raster, {}).cells == std::vector<Index>{2 * 8 + 4});
+}

@@ -29,15 +29,15 @@ void check_size(GDALDataset& dataset, const std::string& name) {
     }
     if (rows * cols >= none) {
         throw Error(
-            fmt::format("{} has {} x {} cells, more than 32-bit numbers can count: crop or coarsen it with "
-                        "gdalwarp",
+            fmt::format("{} has {} x {} cells, more than 32-bit numbers can count: read a part of it "
+                        "(--crop), or coarsen it with gdalwarp first",
                         name, rows, cols));
     }
     const auto memory = static_cast<std::uint64_t>(CPLGetUsablePhysicalRAM());
     if (memory > 0 && rows * cols > memory / sizeof(double)) {
         throw Error(
-            fmt::format("the {} x {} cells of {} do not fit the memory of this machine: crop or coarsen it with "
-                        "gdalwarp",
+            fmt::format("the {} x {} cells of {} do not fit the memory of this machine: read a part of it "
+                        "(--crop), or coarsen it with gdalwarp first",
                         rows, cols, name));
     }
 }
@@ -219,7 +219,9 @@ ReadResult read_raster(const std::filesystem::path& path, const ReadOptions& opt
         if (options.reproject.empty() && !options.cell_m) return result;
         return read_warped(result, name, options, gdal);
     } catch (const std::bad_alloc&) {
-        throw Error(fmt::format("{} does not fit the memory of this machine: crop or coarsen it with gdalwarp", name));
+        throw Error(fmt::format(
+            "{} does not fit the memory of this machine: read a part of it (--crop), or coarsen it with gdalwarp first",
+            name));
     }
 }
 

@@ -179,7 +179,7 @@ void warn_of_stretched_map(const Placement& p, Index rows, Index cols, const OGR
     if (scale == 0 || std::abs(scale - 1) < 0.01) return;
     result.warnings.push_back(fmt::format(
         "lengths on the map of {} are {:.1f} % {} than on the ground: lengths, areas and slopes are the map's "
-        "(reproject with gdalwarp -t_srs to a coordinate system made for the place)",
+        "(--reproject warps it to a coordinate system made for the place)",
         name, 100 * std::abs(scale - 1), scale > 1 ? "longer" : "shorter"));
 }
 

@@ -44,9 +44,10 @@ ChannelHeads channel_heads_on(const Raster& raster, std::span<const Point> point
     return heads;
 }
 
-ChannelHeads read_channel_heads(const std::filesystem::path& path, const Raster& raster, const Messages& messages) {
+ChannelHeads read_cells(const std::filesystem::path& path, const std::vector<std::string>& layers, const Raster& raster,
+                        const Messages& messages) {
     const std::vector<Point> points =
-        io::read_vectors(path, {.layers = {"sources"}, .crs_wkt = raster.placement.crs_wkt}).points;
+        io::read_vectors(path, {.layers = layers, .crs_wkt = raster.placement.crs_wkt}).points;
     if (points.empty()) throw Error(fmt::format("{} holds no points", path.string()));
     const ChannelHeads heads = channel_heads_on(raster, points);
     if (heads.cells.empty()) {
@@ -60,6 +61,10 @@ ChannelHeads read_channel_heads(const std::filesystem::path& path, const Raster&
                                      heads.outside, heads.given, path.string(), places_outside(raster, points)));
     }
     return heads;
+}
+
+ChannelHeads read_channel_heads(const std::filesystem::path& path, const Raster& raster, const Messages& messages) {
+    return read_cells(path, {"sources"}, raster, messages);
 }
 
 }  // namespace thalweg::study
