@@ -53,4 +53,5 @@ TEST_CASE("Areas drawn from a power law have its exponent of exceedance") {
         CHECK(area_exceedance(area, used, 5000, 1e5).exponent.value == law.exponent.value);
     }
     CHECK(std::isnan(area_exceedance(std::vector<double>{1, 2, 3}, {}, 10, 5).exponent.value));
+    CHECK(std::isfinite(area_exceedance(std::vector<double>{1, 2, 3}, {}, 1e-308, 1e9).exponent.value));
 }

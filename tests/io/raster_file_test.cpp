@@ -274,6 +274,28 @@ TEST_CASE("scale and offset are applied after no data is found", "[raster]") {
     CHECK(std::isnan(result.raster.values[4]));
 }
 
+TEST_CASE("what a scale makes of heights is looked at, too", "[raster]") {
+    const TempFolder folder;
+    std::vector<double> values = ramp({});
+    values[3] = 1;
+    const io::ReadResult result = io::read_raster(make(folder, "a.tif", {.type = GDT_Float64, .scale = 1e29}, values));
+    CHECK(result.raster.values[3] == 1e29);
+    CHECK(std::isnan(result.raster.values[0]));
+    CHECK(warned(result, "11 cells of " + (folder / "a.tif").string() + " hold values beyond 1e30"));
+    CHECK_THAT(refusal(make(folder, "b.tif", {.type = GDT_Float64, .scale = 1e307})),
+               Contains("all of its cells are void"));
+}
+
+TEST_CASE("heights above all mountains are said, the highest mountain is not", "[raster]") {
+    const TempFolder folder;
+    std::vector<double> values = ramp({});
+    values[2] = 8849;
+    CHECK(io::read_raster(make(folder, "a.tif", {}, values)).warnings.empty());
+    values[5] = values[6] = 32767;
+    CHECK(warned(io::read_raster(make(folder, "b.tif", {}, values)),
+                 "2 cells of " + (folder / "b.tif").string() + " lie above 9000 m"));
+}
+
 TEST_CASE("geographic rasters are measured on their own ellipsoid", "[raster]") {
     const TempFolder folder;
     const std::array<double, 6> degrees{-79, 0.001, 0, 36, 0, -0.001};
@@ -333,6 +355,25 @@ TEST_CASE("a map whose lengths are not the ground's is said so", "[raster]") {
     REQUIRE(mercator.warnings.size() == 1);
     CHECK_THAT(mercator.warnings[0], Contains("longer than on the ground"));
     CHECK_THAT(mercator.warnings[0], Contains("99.") || Contains("100."));
+}
+
+TEST_CASE("coordinates that cannot be those of the coordinate system are no damage of the file", "[raster]") {
+    const TempFolder folder;
+    const std::string far = refusal(make(folder, "a.tif", {.transform = {5e8, 30, 0, 4e9, 0, -30}}));
+    CHECK_THAT(far, Contains("no place on the earth") && Contains("--crs") && Contains("EPSG:32611"));
+    CHECK(is_sentence(far));
+    const io::ReadResult degrees =
+        io::read_raster(make(folder, "b.tif", {.transform = {10, 0.001, 0, 45, 0, -0.001}, .crs = "EPSG:32611"}));
+    CHECK(warned(degrees, "look like degrees"));
+}
+
+TEST_CASE("a raster around the earth is said to be cut at its edge", "[raster]") {
+    const TempFolder folder;
+    const FileSpec whole{.rows = 4, .cols = 8, .transform = {-180, 45, 0, 90, 0, -45}, .crs = "EPSG:4326"};
+    CHECK(warned(io::read_raster(make(folder, "a.tif", whole)), "around the earth"));
+    FileSpec part = whole;
+    part.cols = 6;
+    CHECK_FALSE(warned(io::read_raster(make(folder, "b.tif", part)), "around the earth"));
 }
 
 TEST_CASE("what cannot be measured is refused with one sentence", "[raster]") {

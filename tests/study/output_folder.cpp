@@ -75,6 +75,29 @@ TEST_CASE("A file that a user put beside our results keeps them from being repla
     CHECK(test::bytes_of(temp / "out/figures/notes.txt") == "mine");
 }
 
+TEST_CASE("What came to stand there while we worked is not replaced either") {
+    const TempFolder temp;
+    OutputFolder folder(temp / "out", IfPresent::refuse);
+    write_text(folder.path() / "summary.json", "ours");
+    std::filesystem::create_directory(temp / "out");
+    std::ofstream(temp / "out/notes.txt") << "mine";
+    CHECK(error_of([&] { folder.commit(); }).find("exists already") != std::string::npos);
+    CHECK(test::bytes_of(temp / "out/notes.txt") == "mine");
+
+    OutputFolder(temp / "more", IfPresent::refuse).commit();
+    OutputFolder second(temp / "more", IfPresent::replace);
+    std::ofstream(temp / "more/notes.txt") << "mine";
+    CHECK(error_of([&] { second.commit(); }).find("notes.txt") != std::string::npos);
+    CHECK(test::bytes_of(temp / "more/notes.txt") == "mine");
+}
+
+TEST_CASE("A link to a folder that a user put beside our results keeps them from being replaced") {
+    const TempFolder temp;
+    OutputFolder(temp / "out", IfPresent::refuse).commit();
+    std::filesystem::create_directory_symlink(temp / ".", temp / "out/elsewhere");
+    CHECK(error_of([&] { OutputFolder(temp / "out", IfPresent::replace); }).find("elsewhere") != std::string::npos);
+}
+
 TEST_CASE("Text that cannot be written whole is an error") {
     CHECK(test::is_sentence(error_of([] { write_text("/dev/full", std::string(100000, 'x')); })));
 }

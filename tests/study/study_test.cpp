@@ -185,6 +185,21 @@ TEST_CASE("Nothing in a summary is null without a reason in the notes") {
     }
 }
 
+TEST_CASE("Notes speak of what was asked for, and of channels that begin within a few cells") {
+    const TempFolder temp;
+    const NamedRaster dem = read_dem(jacksboro, {}, {});
+    const auto notes = [&](double cells) {
+        MeasureOptions options;
+        options.channel_area_m2 = cells * 959.5036e6 / (344 * 403);
+        std::filesystem::create_directories(temp / "a");
+        return Json::parse(analyze(dem, options, temp / "a", {}))["notes"].dump();
+    };
+    CHECK(notes(100).find("drop_analysis") == std::string::npos);
+    CHECK(notes(100).find("cells come together") == std::string::npos);
+    CHECK(notes(100).find("ingest:") == std::string::npos);  // no hints is no null
+    CHECK(notes(5).find("begin where 5 cells come together") != std::string::npos);
+}
+
 TEST_CASE("A study of the embedded DEM runs from measuring to comparing") {
     const TempFolder temp;
     Experiment e = read_experiment(THALWEG_SOURCE_DIR "/validation/jacksboro.toml");

@@ -61,7 +61,7 @@ WidthFunction width_function(const StreamNetwork& network) {
 PowerLawFit area_exceedance(std::span<const double> drainage_area_m2, std::span<const std::uint8_t> used,
                             double smallest_m2, double largest_m2) {
     constexpr int per_decade = 10;
-    const double decades = std::log10(largest_m2 / smallest_m2);
+    const double decades = std::log10(largest_m2) - std::log10(smallest_m2);  // their ratio may overflow
     const int steps = decades > 0 ? static_cast<int>(per_decade * decades) + 1 : 0;
     std::vector<double> area, share(steps, 0);
     for (int i = 0; i < steps; ++i) area.push_back(smallest_m2 * std::pow(10.0, static_cast<double>(i) / per_decade));

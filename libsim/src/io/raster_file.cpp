@@ -97,21 +97,29 @@ void blank_masked(GDALRasterBand& mask, Index first_row, Index rows, Index cols,
 /// No file of heights means more than this; it is how some programs write "nothing" without saying so.
 constexpr double absurd_height = 1e30;
 
-std::size_t blank_nodata(Strip strip, const std::vector<double>& nodata) {
+void blank_nodata(Strip strip, const std::vector<double>& nodata) {
+    for (double& value : strip) {
+        if (!std::isfinite(value) || std::find(nodata.begin(), nodata.end(), value) != nodata.end()) value = no_value;
+    }
+}
+
+std::size_t blank_absurd(Strip strip) {
     std::size_t absurd = 0;
     for (double& value : strip) {
-        if (std::find(nodata.begin(), nodata.end(), value) != nodata.end()) value = no_value;
-        absurd += std::abs(value) >= absurd_height && std::isfinite(value);
-        if (!(std::abs(value) < absurd_height)) value = no_value;
+        if (std::isnan(value) || std::abs(value) < absurd_height) continue;
+        value = no_value;
+        ++absurd;
     }
     return absurd;
 }
 
-void to_metres(GDALRasterBand& band, double unit_m, std::vector<double>& values) {
+/// Returns how many values are no heights then: the scale, too, may be wrong.
+std::size_t to_metres(GDALRasterBand& band, double unit_m, std::vector<double>& values) {
     const double scale = band.GetScale() * unit_m;
     const double offset = band.GetOffset() * unit_m;
-    if (scale == 1 && offset == 0) return;
+    if (scale == 1 && offset == 0) return 0;
     for (double& value : values) value = value * scale + offset;
+    return blank_absurd(values);
 }
 
 /// The band that tells which cells are valid; null if only nodata values do. GDAL takes alpha for a mask in bands of
@@ -146,15 +154,16 @@ void read_values(GDALDataset& dataset, const ReadOptions& options, const std::st
         const Index rows = std::min(strip_rows, grid.rows - row);
         const Strip strip(values.data() + std::size_t{row} * grid.cols, std::size_t{rows} * grid.cols);
         read_strip(band, mask, row, rows, grid.cols, strip, name, gdal);
-        absurd += blank_nodata(strip, nodata);
+        blank_nodata(strip, nodata);
+        absurd += blank_absurd(strip);
     }
+    absurd += to_metres(band, result.vertical_unit_m, values);
     if (absurd > 0) {
         result.warnings.push_back(
             fmt::format("{} cells of {} hold values beyond 1e30, which are no heights: taken as no "
                         "data",
                         absurd, name));
     }
-    to_metres(band, result.vertical_unit_m, values);
 }
 
 void turn_over(Raster& raster) {

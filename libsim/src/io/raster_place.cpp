@@ -13,6 +13,7 @@
 #include <numbers>
 #include <optional>
 
+#include "io/gdal_guard.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/io/geodesy.hpp"
 
@@ -155,7 +156,9 @@ void find_vertical_unit(GDALDataset& dataset, const OGRSpatialReference* crs, co
 }
 
 /// Ratio of lengths on the map to lengths on the ellipsoid around the raster's middle, west to east; 0 if unknown.
-double map_scale(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs) {
+/// Throws Error where the coordinates cannot be those of the coordinate system.
+double map_scale(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs, const std::string& name) {
+    const GdalGuard gdal;  // what is said here is no damage of the file
     OGRSpatialReference plane(crs);
     plane.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     const std::unique_ptr<OGRSpatialReference> sphere(plane.CloneGeogCS());
@@ -165,7 +168,13 @@ double map_scale(const Placement& p, Index rows, Index cols, const OGRSpatialRef
     const Point middle = p.center(rows / 2, cols / 2);
     std::array<double, 2> x{middle.x - p.cell_width / 2, middle.x + p.cell_width / 2};
     std::array<double, 2> y{middle.y, middle.y};
-    if (!change || !change->Transform(2, x.data(), y.data())) return 0;
+    if (!change) return 0;
+    if (!change->Transform(2, x.data(), y.data())) {
+        throw Error(
+            fmt::format("the middle of {}, ({:.10g}, {:.10g}), is no place on the earth in its coordinate system ({}): "
+                        "give the right one with --crs",
+                        name, middle.x, middle.y, epsg_or_name(crs)));
+    }
     double f = crs.GetInvFlattening();
     f = f == 0 ? 0 : 1 / f;
     double ground = 0;
@@ -175,7 +184,7 @@ double map_scale(const Placement& p, Index rows, Index cols, const OGRSpatialRef
 
 void warn_of_stretched_map(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs,
                            const std::string& name, ReadResult& result) {
-    const double scale = map_scale(p, rows, cols, crs);
+    const double scale = map_scale(p, rows, cols, crs, name);
     if (scale == 0 || std::abs(scale - 1) < 0.01) return;
     result.warnings.push_back(fmt::format(
         "lengths on the map of {} are {:.1f} % {} than on the ground: lengths, areas and slopes are the map's "
@@ -197,6 +206,22 @@ Grid degrees_grid(const Placement& p, Index rows, Index cols, const OGRSpatialRe
     } catch (const Error& error) {
         throw Error(fmt::format("{}: {}", name, error.what()));
     }
+}
+
+/// Water does not find its way across the edge of the raster, although the earth goes on there.
+void warn_of_seam(const Placement& p, Index cols, const std::string& name, ReadResult& result) {
+    if (cols * p.cell_width < 360 - 1.5 * p.cell_width) return;
+    result.warnings.push_back(fmt::format(
+        "{} reaches around the earth: its west and east edges are one meridian, yet water leaves there", name));
+}
+
+void warn_of_degrees(const Placement& p, Index rows, Index cols, const std::string& crs_name, const std::string& name,
+                     ReadResult& result) {
+    if (!plausible_degrees(p, rows, cols)) return;
+    result.warnings.push_back(
+        fmt::format("the coordinates of {} look like degrees, and its cells are {:.3g} wide, but its coordinate system "
+                    "({}) is a plane: if they are longitudes and latitudes, give --crs EPSG:4326",
+                    name, p.cell_width, crs_name));
 }
 
 void measure_plane(Raster& raster, Index rows, Index cols, double unit_m) {
@@ -221,6 +246,7 @@ void place_without_crs(Index rows, Index cols, const std::string& name, ReadResu
     p.crs_wkt = wkt_of(wgs84);
     result.crs_name = "EPSG:4326";
     result.raster.grid = degrees_grid(p, rows, cols, wgs84, name);
+    warn_of_seam(p, cols, name, result);
 }
 
 void place_with_crs(OGRSpatialReference crs, Index rows, Index cols, const std::string& name, ReadResult& result) {
@@ -237,9 +263,11 @@ void place_with_crs(OGRSpatialReference crs, Index rows, Index cols, const std::
     result.crs_name = epsg_or_name(crs);
     if (p.geographic) {
         result.raster.grid = degrees_grid(p, rows, cols, crs, name);
+        warn_of_seam(p, cols, name, result);
         return;
     }
     measure_plane(result.raster, rows, cols, crs.GetLinearUnits());
+    warn_of_degrees(p, rows, cols, result.crs_name, name, result);
     warn_of_stretched_map(p, rows, cols, crs, name, result);
 }
 

@@ -16,9 +16,12 @@ namespace {
 struct Heights {
     std::size_t count = 0;
     std::size_t negative = 0;
+    std::size_t above_mountains = 0;
     double lowest = std::numeric_limits<double>::infinity();
     double highest = -std::numeric_limits<double>::infinity();
 };
+
+constexpr double above_all_mountains_m = 9000;  // Mount Everest: 8849
 
 Heights summarise(std::span<const double> values) {
     Heights heights;
@@ -26,6 +29,7 @@ Heights summarise(std::span<const double> values) {
         if (std::isnan(value)) continue;
         ++heights.count;
         heights.negative += value < 0;
+        heights.above_mountains += value > above_all_mountains_m;
         heights.lowest = std::min(heights.lowest, value);
         heights.highest = std::max(heights.highest, value);
     }
@@ -142,6 +146,12 @@ HeightsNoticed notice_heights(const Raster& raster, const std::string& name) {
     if (heights.negative > 0) {
         warn(fmt::format("{} cells of {} lie below 0 m, the lowest at {} m: land below the sea, or errors",
                          heights.negative, name, heights.lowest));
+    }
+    if (heights.above_mountains > 0) {
+        warn(
+            fmt::format("{} cells of {} lie above {} m, higher than any mountain, the highest at {} m: errors, a value "
+                        "for no data (--nodata), another unit than metres, or not the earth",
+                        heights.above_mountains, name, above_all_mountains_m, heights.highest));
     }
     const std::size_t holes = heights.count < raster.values.size() ? cells_in_holes(raster) : 0;
     noticed.void_cells = static_cast<Index>(holes);

@@ -14,7 +14,7 @@ struct HeightsNoticed {
 };
 
 /// What in the heights would make a measurement silently wrong, one sentence each: a border of one value that is not
-/// declared as no data, holes, heights below the sea.
+/// declared as no data, holes, heights below the sea or above all mountains.
 HeightsNoticed notice_heights(const Raster&, const std::string& name);
 
 }  // namespace thalweg::io

@@ -65,6 +65,17 @@ void note_crossing_drops(const ChannelEvidence& evidence, std::vector<std::strin
         *chosen, lasting ? fmt::format(", and agree from {:g} m2 on", *lasting) : ""));
 }
 
+/// Channels of a few cells are hillslopes: on small rasters the default comes to that.
+void note_small_channels(const RasterMeasurement& m, std::vector<std::string>& notes) {
+    constexpr double enough = 10;
+    const double cells = m.statistics.channels.threshold_area_m2 / m.area_m2 * m.valid_cells;
+    if (!(cells < enough)) return;
+    notes.push_back(
+        fmt::format("channels: they begin where {:.2g} cells come together, so that hillslopes count as rivers; give a "
+                    "larger --channel-area-m2 or a finer DEM",
+                    std::max(cells, 1.0)));
+}
+
 Json outlet_json(const OutletReport& o) {
     return {{"x", o.given.x},     {"y", o.given.y},       {"snapped_x", o.snapped.x}, {"snapped_y", o.snapped.y},
             {"snap_m", o.snap_m}, {"moved_m", o.moved_m}, {"area_m2", o.area_m2},     {"complete", o.complete}};
@@ -161,6 +172,7 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
     explain_null("channels.drop_analysis", summary["channels"].value("drop_analysis", Json::array()),
                  "t needs two streams of the first order and two of higher ones", notes);
     note_crossing_drops(m.channel_evidence, notes);
+    note_small_channels(m, notes);
     if (options.heads) summary["channels"]["heads"] = heads_json(*options.heads);
     if (dem.outlet) summary["outlet"] = outlet_json(*dem.outlet);
     summary["measured_on"] = "raster";

@@ -81,7 +81,7 @@ Json network_json(const NetworkStatistics& n, std::vector<std::string>& notes) {
     explain("junctions", "an angle needs a junction of exactly two rivers, its spread two, Howard's angle Flint's q");
     explain("area_exceedance",
             "the law needs a basin ten times as large as the channel threshold, and two steps of area above it");
-    explain("width_function", "there is no river");
+    if (n.width.links.empty()) notes.push_back("width_function: there is no river");
     return json;
 }
 

@@ -28,7 +28,8 @@ constexpr const char* list_name = ".thalweg-files";
 std::vector<std::string> files_below(const fs::path& folder) {
     std::vector<std::string> files;
     for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        if (!entry.is_directory()) files.push_back(fs::relative(entry.path(), folder).generic_string());
+        if (entry.is_symlink() || !entry.is_directory())
+            files.push_back(entry.path().lexically_relative(folder).generic_string());
     }
     std::sort(files.begin(), files.end());
     return files;
@@ -45,40 +46,47 @@ std::string first_foreign_file(const fs::path& folder) {
     return "";
 }
 
+fs::path final_place(const fs::path& given) {
+    if (given.empty()) throw Error("no output folder: give --out DIR");
+    const fs::path place = fs::absolute(given).lexically_normal();
+    return place.has_filename() ? place : place.parent_path();
+}
+
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path final, IfPresent if_present) {
-    if (final.empty()) throw Error("no output folder: give --out DIR");
-    final_ = fs::absolute(final).lexically_normal();
-    if (!final_.has_filename()) final_ = final_.parent_path();
-    std::error_code problem;
-    const fs::file_status status = fs::symlink_status(final_, problem);
-    if (fs::exists(status) && if_present == IfPresent::refuse) {
-        throw Error(
-            fmt::format("'{}' exists already; name another folder or use --force to replace it", final.string()));
-    }
-    if (fs::exists(status) && !fs::is_directory(status)) {
-        throw Error(fmt::format("'{}' is not a folder, so it is not replaced; name another", final.string()));
-    }
-    if (fs::exists(status)) {
-        const std::string foreign = first_foreign_file(final_);
-        if (!foreign.empty()) {
-            throw Error(
-                fmt::format("'{}' holds '{}', which thalweg did not write, so --force does not replace it; move "
-                            "it away or name another folder",
-                            final.string(), foreign));
-        }
-    }
+OutputFolder::OutputFolder(fs::path final, IfPresent if_present)
+    : given_(std::move(final)), final_(final_place(given_)), if_present_(if_present) {
+    check();
     partial_ = hidden_neighbour(final_, "partial");
     for (fs::path parent = final_.parent_path(); !parent.empty() && !fs::exists(parent);
          parent = parent.parent_path()) {
         created_parents_.push_back(parent);
     }
+    std::error_code problem;
     fs::create_directories(partial_, problem);
     if (problem) {
         discard();
         throw Error(fmt::format("cannot write into '{}': {}", final_.parent_path().string(), problem.message()));
     }
+}
+
+void OutputFolder::check() const {
+    std::error_code ignored;
+    const fs::file_status status = fs::symlink_status(final_, ignored);
+    if (!fs::exists(status)) return;
+    if (if_present_ == IfPresent::refuse) {
+        throw Error(
+            fmt::format("'{}' exists already; name another folder or use --force to replace it", given_.string()));
+    }
+    if (!fs::is_directory(status)) {
+        throw Error(fmt::format("'{}' is not a folder, so it is not replaced; name another", given_.string()));
+    }
+    const std::string foreign = first_foreign_file(final_);
+    if (foreign.empty()) return;
+    throw Error(
+        fmt::format("'{}' holds '{}', which thalweg did not write, so --force does not replace it; move it away or "
+                    "name another folder",
+                    given_.string(), foreign));
 }
 
 OutputFolder::~OutputFolder() {
@@ -93,6 +101,7 @@ void OutputFolder::discard() {
 }
 
 void OutputFolder::commit() {
+    check();  // again: meanwhile somebody else may have made a folder there, or put files into it
     std::string list;
     for (const std::string& file : files_below(partial_)) list += file + '\n';
     write_text(partial_ / list_name, list);
@@ -112,9 +121,7 @@ void OutputFolder::commit() {
 }
 
 void remove_abandoned(const fs::path& final) {
-    if (final.empty()) throw Error("no output folder: give --out DIR");
-    fs::path place = fs::absolute(final).lexically_normal();
-    if (!place.has_filename()) place = place.parent_path();
+    const fs::path place = final_place(final);
     const std::string prefix = fmt::format(".{}.partial-", place.filename().string());
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(place.parent_path(), ignored)) {

@@ -182,6 +182,11 @@ void explain_nulls(const Statistics& s, std::vector<std::string>& notes) {
     }
 }
 
+/// Anywhere within. (Json's own flatten would make null of an empty list, such as that of hints, too.)
+bool holds_null(const Json& json) {
+    return json.is_structured() ? std::ranges::any_of(json, holds_null) : json.is_null();
+}
+
 }  // namespace
 
 Json numbers(std::span<const double> values) {
@@ -265,10 +270,7 @@ Json terrain_json(const TerrainInput& input, const Statistics& s, const Position
 }
 
 void explain_null(const char* key, const Json& json, const char* reason, std::vector<std::string>& notes) {
-    const Json values = json.flatten();  // named, because items() refers to it
-    if (std::ranges::any_of(values, [](const Json& value) { return value.is_null(); })) {
-        notes.push_back(fmt::format("{}: {}", key, reason));
-    }
+    if (holds_null(json)) notes.push_back(fmt::format("{}: {}", key, reason));
 }
 
 std::string text_of(const Json& json) { return json.dump(2) + "\n"; }

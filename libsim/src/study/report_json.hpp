@@ -55,7 +55,7 @@ Json network_json(const NetworkStatistics&, std::vector<std::string>& notes);
 
 Json chi_json(const ChiStatistics&, std::vector<std::string>& notes);
 
-/// Adds "key: reason" to the notes if anything in the JSON is null (or an empty list).
+/// Adds "key: reason" to the notes if anything in the JSON is null.
 void explain_null(const char* key, const Json&, const char* reason, std::vector<std::string>& notes);
 
 /// The text of a file: two spaces of indentation and a final newline.

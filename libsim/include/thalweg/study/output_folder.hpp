@@ -11,7 +11,7 @@ enum class IfPresent { refuse, replace };
 
 /// A folder that appears whole or not at all: files are written into a hidden neighbour, which takes the final name in
 /// one rename on `commit`. Without a commit nothing is left behind, and what stood there before is still there. A
-/// folder that holds a file that we did not write (as its list, .thalweg-files, tells) is never replaced.
+/// folder that holds a file or a link that we did not write (as its list, .thalweg-files, tells) is never replaced.
 class OutputFolder {
   public:
     /// Throws Error if `final` exists and may not be replaced, or its parent cannot be written.
@@ -22,13 +22,17 @@ class OutputFolder {
 
     /// Where to write for now.
     const std::filesystem::path& path() const { return partial_; }
+    /// Throws Error if what meanwhile came to stand at `final` may not be replaced.
     void commit();
 
     /// Removes what was written so far, as the destructor does without a commit; for a program that is being stopped.
     void discard();
 
   private:
-    std::filesystem::path final_;
+    void check() const;
+
+    std::filesystem::path given_, final_;
+    IfPresent if_present_;
     std::filesystem::path partial_;
     std::vector<std::filesystem::path> created_parents_;  ///< innermost first
     bool committed_ = false;
