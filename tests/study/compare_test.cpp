@@ -162,3 +162,42 @@ TEST_CASE("A side measured before sets the threshold of the other, and two that 
     CHECK(error_of([&] { compared(temp, from_heads, dem); }).find("do not begin at a drainage area") !=
           std::string::npos);
 }
+
+TEST_CASE("What a DEM was is told, and by what the sides were measured differently") {
+    const TempFolder temp;
+    const auto dem = slope_of(temp, "dem.tif", 60);
+    Json other = drawn_summary();
+    other["routing"] = "mfd";
+    other["conditioning"] = {{"method", "none"}};
+    other["channels"]["edge_basins"] = "keep";
+    other["input"]["dx_m"] = other["input"]["dy_m"] = 30.0;
+    const Json unlike = compared(temp, dem, folder_of(temp, "b", other));
+    const Json& input = unlike["a"]["input"];
+    CHECK(input["file"] == "dem.tif");
+    CHECK(input["rows"] == 60);
+    CHECK(input["valid_cells"] == 3600);
+    CHECK(input["area_m2"] == 360000.0);
+    CHECK(input["dx_m"] == 10.0);
+    for (const char* word : {"routing: d8 in a, mfd in b", "conditioning: fill in a, none in b",
+                             "basins that the edge cuts: drop in a, keep in b", "cells of 10 m in a, of 30 m in b"}) {
+        CHECK(unlike["notes"].dump().find(word) != std::string::npos);
+    }
+    for (const Json& note : compared(temp, dem, dem)["notes"]) {
+        CHECK(note.get<std::string>().find("in b") == std::string::npos);
+    }
+}
+
+TEST_CASE("Options that say how a DEM is read are refused where no side is a DEM") {
+    const TempFolder temp;
+    const auto simulated = temp / "simulated";
+    std::filesystem::create_directories(simulated);
+    std::filesystem::rename(slope_of(temp, "dem.tif", 60), simulated / "elevation.tif");
+    temp.text("simulated/slope_area_nodes.csv", "area_m2,slope,talus_limited\n");
+    CompareOptions crop;
+    crop.read.window = io::Window{5e5, 4e6 - 300, 5e5 + 300, 4e6};
+    std::filesystem::create_directories(temp / "out");
+    CHECK(test::is_sentence(error_of([&] { compare(simulated, simulated, crop, temp / "out", {}); })));
+    CompareOptions keep;
+    keep.measure.edge_basins = terrain::EdgeBasins::keep;  // that is how both are measured now
+    CHECK(error_of([&] { compare(simulated, simulated, keep, temp / "out", {}); }).empty());
+}

@@ -18,22 +18,6 @@
 namespace thalweg::study {
 namespace {
 
-TerrainInput input_of(const NamedRaster& dem, const RasterMeasurement& m) {
-    const Grid& grid = dem.raster.grid;
-    return {.file = dem.file,
-            .sha256 = dem.sha256,
-            .crs = dem.crs_name,
-            .geographic = dem.raster.placement.geographic,
-            .rows = grid.rows,
-            .cols = grid.cols,
-            .dx_m = mean(grid.east_west),
-            .dy_m = mean(grid.north_south),
-            .valid_cells = m.valid_cells,
-            .nodata_cells = grid.size() - m.valid_cells,
-            .area_m2 = m.area_m2,
-            .origin = dem.origin};
-}
-
 Json heads_json(const ChannelHeads& heads) {
     return {{"given", heads.given}, {"outside", heads.outside}, {"merged", heads.merged}};
 }
@@ -79,11 +63,6 @@ void note_small_channels(const RasterMeasurement& m, std::vector<std::string>& n
 Json outlet_json(const OutletReport& o) {
     return {{"x", o.given.x},     {"y", o.given.y},       {"snapped_x", o.snapped.x}, {"snapped_y", o.snapped.y},
             {"snap_m", o.snap_m}, {"moved_m", o.moved_m}, {"area_m2", o.area_m2},     {"complete", o.complete}};
-}
-
-const char* routing_name(Routing routing) {
-    constexpr std::array names{"d8", "dinf", "mfd"};
-    return names[static_cast<std::size_t>(routing)];
 }
 
 /// ESRI's codes: 1 << slot, 0 where water leaves, 255 without data.

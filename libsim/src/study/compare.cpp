@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 
+#include "study/ingest.hpp"
 #include "study/report_json.hpp"
 #include "study/results.hpp"
 #include "thalweg/core/error.hpp"
@@ -24,14 +25,15 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// What is compared of one terrain, as the summary of `analyze` says it.
 struct Side {
     fs::path path;
-    std::optional<NamedRaster> raster;  ///< still to be measured
-    Json summary;
+    std::optional<NamedRaster> raster{};  ///< still to be measured
+    bool is_dem = false;                  ///< given as a file, which the options say how to read
+    Json summary{};
     std::vector<double> link_length_m{}, link_area_m2{};  ///< empty where a folder does not hold them
     std::optional<Index> outlet{};                        ///< of a raster that is one catchment
 };
 
 Side analyzed_side(const fs::path& folder) {
-    Side side{folder, std::nullopt, read_json(folder / "summary.json")};
+    Side side{.path = folder, .summary = read_json(folder / "summary.json")};
     if (fs::is_regular_file(folder / "links.csv")) {
         const Table links = io::read_csv(folder / "links.csv");
         side.link_length_m = numbers_of(links, "length_m");
@@ -41,7 +43,7 @@ Side analyzed_side(const fs::path& folder) {
 }
 
 Side grown_side(const fs::path& folder, const Messages& messages) {
-    Side side{folder, read_dem(folder / "elevation.tif", {}, {.progress = messages.progress}), nullptr};
+    Side side{.path = folder, .raster = read_dem(folder / "elevation.tif", {}, {.progress = messages.progress})};
     side.outlet = grown_outlet(folder, side.raster->raster);
     return side;
 }
@@ -51,13 +53,13 @@ Side load(const fs::path& path, const CompareOptions& options, const Messages& m
         case ResultKind::analyzed:
             return analyzed_side(path);
         case ResultKind::simulated:
-            return {path, read_dem(path / "elevation.tif", {}, {.progress = messages.progress}), nullptr};
+            return {.path = path, .raster = read_dem(path / "elevation.tif", {}, {.progress = messages.progress})};
         case ResultKind::grown:
             return grown_side(path, messages);
         case ResultKind::file:
             break;
     }
-    return {path, read_dem(path, options.read, messages), nullptr};
+    return {.path = path, .raster = read_dem(path, options.read, messages), .is_dem = true};
 }
 
 double at(const Json& json, const char* pointer) {
@@ -71,6 +73,10 @@ double common_threshold(const Side& a, const Side& b, const CompareOptions& opti
     std::optional<double> common = options.measure.channel_area_m2;
     for (const Side* side : {&a, &b}) {
         if (side->raster) continue;
+        if (!side->summary.contains(Json::json_pointer("/channels/threshold_area_m2"))) {
+            throw Error(
+                fmt::format("'{}' holds a summary.json of another kind than analyze writes", side->path.string()));
+        }
         const double measured = at(side->summary, "/channels/threshold_area_m2");
         if (std::isnan(measured)) {
             throw Error(
@@ -97,10 +103,37 @@ void measure_side(Side& side, MeasureOptions options, double threshold_m2) {
     if (side.outlet) options.catchment_outlet = side.outlet;
     const RasterMeasurement m = measure_raster(side.raster->raster, options);
     std::vector<std::string> notes = side.raster->warnings;
-    side.summary = terrain_json({}, m.statistics, positions(side.raster->raster), nullptr, notes);
+    side.summary = terrain_json(input_of(*side.raster, m), m.statistics, positions(side.raster->raster),
+                                conditioning_json(m.conditioning, options.conditioning), notes);
+    side.summary["routing"] = routing_name(options.routing);
     side.summary["notes"] = notes;
     side.link_length_m = m.statistics.network.length_m;
     side.link_area_m2 = m.statistics.network.area_m2;
+}
+
+/// By what both sides were measured differently, besides the terrain: then part of every distance comes of that.
+std::vector<std::string> unlike_rulers(const Side& a, const Side& b) {
+    std::vector<std::string> unlike;
+    for (const auto& [pointer, what] : {std::pair{"/routing", "routing"},
+                                        {"/conditioning/method", "conditioning"},
+                                        {"/channels/edge_basins", "basins that the edge cuts"}}) {
+        const Json::json_pointer where(pointer);
+        if (!a.summary.contains(where) || !b.summary.contains(where)) continue;
+        const Json &in_a = a.summary.at(where), &in_b = b.summary.at(where);
+        if (in_a == in_b || !in_a.is_string() || !in_b.is_string()) continue;
+        unlike.push_back(fmt::format("{}: {} in a, {} in b, so that distances are not of the terrain alone", what,
+                                     in_a.get<std::string>(), in_b.get<std::string>()));
+    }
+    const auto cell = [](const Side& side) {
+        return std::sqrt(at(side.summary, "/input/dx_m") * at(side.summary, "/input/dy_m"));
+    };
+    if (std::abs(std::log(cell(a) / cell(b))) > std::log(1.05)) {
+        unlike.push_back(
+            fmt::format("cells of {:.4g} m in a, of {:.4g} m in b: slopes, lengths and channels depend on their size; "
+                        "bring the DEMs to one with --cell-m",
+                        cell(a), cell(b)));
+    }
+    return unlike;
 }
 
 /// A curve of a summary as two rows of numbers; pairs with a null are left out.
@@ -322,27 +355,36 @@ std::vector<std::string> notes_of(const Side& a, const Side& b, const Json& aspe
     return notes;
 }
 
+/// Throws Error for options that no side would heed.
+void refuse_idle_options(const Side& a, const Side& b, const CompareOptions& options) {
+    if (a.is_dem || b.is_dem) return;
+    MeasureOptions other = options.measure;
+    other.channel_area_m2.reset();
+    if (a.raster || b.raster) other.edge_basins = terrain::EdgeBasins::drop;  // a raster is measured now
+    refuse_dem_options(a.path, options.read, other);
+}
+
 }  // namespace
 
 std::string compare(const fs::path& a_path, const fs::path& b_path, const CompareOptions& options,
                     const fs::path& folder, const Messages& messages) {
     Side a = load(a_path, options, messages), b = load(b_path, options, messages);
     const double threshold = common_threshold(a, b, options);
-    if (!a.raster && !b.raster) {
-        MeasureOptions other = options.measure;
-        other.channel_area_m2.reset();
-        refuse_dem_options(a_path, options.read, other);
-    }
+    refuse_idle_options(a, b, options);
     messages.progress("measuring both sides");
     measure_side(a, options.measure, threshold);
     measure_side(b, options.measure, threshold);
     try {
         const Json aspects = all_aspects(a, b);
+        std::vector<std::string> notes = unlike_rulers(a, b);
+        for (const std::string& note : notes) messages.warning(note);
+        const auto of_sides = notes_of(a, b, aspects);
+        notes.insert(notes.end(), of_sides.begin(), of_sides.end());
         const Json comparison{{"a", side_json(a)},
                               {"b", side_json(b)},
                               {"channel_threshold_area_m2", threshold},
                               {"aspects", aspects},
-                              {"notes", notes_of(a, b, aspects)}};
+                              {"notes", notes}};
         std::string text = text_of(comparison);
         write_text(folder / "comparison.json", text);
         return text;

@@ -29,6 +29,22 @@ std::size_t cut_basins(const RasterMeasurement& m) {
 
 }  // namespace
 
+TerrainInput input_of(const NamedRaster& dem, const RasterMeasurement& m) {
+    const Grid& grid = dem.raster.grid;
+    return {.file = dem.file,
+            .sha256 = dem.sha256,
+            .crs = dem.crs_name,
+            .geographic = dem.raster.placement.geographic,
+            .rows = grid.rows,
+            .cols = grid.cols,
+            .dx_m = mean(grid.east_west),
+            .dy_m = mean(grid.north_south),
+            .valid_cells = m.valid_cells,
+            .nodata_cells = grid.size() - m.valid_cells,
+            .area_m2 = m.area_m2,
+            .origin = dem.origin};
+}
+
 Json ingest_json(const NamedRaster& dem, const RasterMeasurement& m, const HeightSurvey& s,
                  const std::vector<std::string>& hints) {
     const Grid& grid = dem.raster.grid;

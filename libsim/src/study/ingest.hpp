@@ -10,6 +10,9 @@
 
 namespace thalweg::study {
 
+/// What a DEM was, for the summary of what was measured on it.
+TerrainInput input_of(const NamedRaster&, const RasterMeasurement&);
+
 /// What was read, and what in it may mislead: the object `ingest` of the summary.
 Json ingest_json(const NamedRaster&, const RasterMeasurement&, const HeightSurvey&,
                  const std::vector<std::string>& hints);

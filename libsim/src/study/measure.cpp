@@ -260,6 +260,7 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
 
     s.channels = channel_statistics(s, options.heads ? nan : threshold, basin_area);
     s.channels.rule = options.channels;
+    s.channels.edge_basins = options.edge_basins;
     s.channels.source_area_m2 = source_areas(terrain, channels);
     s.channels.nodes = static_cast<Index>(count(channels));
     const std::size_t everywhere = count(all_channels);

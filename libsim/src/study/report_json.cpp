@@ -54,6 +54,7 @@ Json channels_json(const ChannelStatistics& c) {
             {"threshold_area_m2", number(c.threshold_area_m2)},
             {"source_area_m2", numbers(c.source_area_m2)},
             {"basin_area_m2", c.basin_area_m2},
+            {"edge_basins", edge_basins_name(c.edge_basins)},
             {"share_used", number(c.share_used)},
             {"cells", c.nodes},
             {"sources", c.sources},
@@ -189,6 +190,13 @@ bool holds_null(const Json& json) {
 
 }  // namespace
 
+const char* routing_name(Routing routing) {
+    constexpr std::array names{"d8", "dinf", "mfd"};
+    return names[static_cast<std::size_t>(routing)];
+}
+
+const char* edge_basins_name(terrain::EdgeBasins rule) { return rule == terrain::EdgeBasins::keep ? "keep" : "drop"; }
+
 Json numbers(std::span<const double> values) {
     Json list = Json::array();
     for (const double value : values) list.push_back(number(value));
@@ -222,7 +230,8 @@ Json conditioning_json(const ConditioningReport& c, Conditioning method) {
 
 Json tree_json(const TreeStatistics& t, std::vector<std::string>& notes) {
     Json channels = channels_json(t.channels);
-    for (const char* only_of_terrains : {"rule", "threshold_area_m2", "source_area_m2", "share_used", "cells"}) {
+    for (const char* only_of_terrains :
+         {"rule", "threshold_area_m2", "source_area_m2", "edge_basins", "share_used", "cells"}) {
         channels.erase(only_of_terrains);
     }
     Json tree{

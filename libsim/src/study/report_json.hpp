@@ -25,6 +25,9 @@ Json numbers(std::span<const double> values);
 /// `[low, high]`, or null where the estimate has none.
 Json interval(const Estimate&);
 
+const char* routing_name(Routing);
+const char* edge_basins_name(terrain::EdgeBasins);
+
 /// What a terrain was, before anything is measured on it.
 struct TerrainInput {
     std::string file;  ///< "" where it was not a file

@@ -122,6 +122,7 @@ struct ChannelStatistics {
     double threshold_area_m2;                ///< NaN where channels do not begin by area
     std::array<double, 3> source_area_m2{};  ///< least, median and largest drainage area where channels begin
     double basin_area_m2;                    ///< area of the basins used
+    terrain::EdgeBasins edge_basins{};       ///< whether catchments that the edge cuts count
     double share_used;                       ///< of the channel nodes, in complete catchments
     Index nodes;                             ///< channel nodes used
     Index sources, links, junctions, outlets;
