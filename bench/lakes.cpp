@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Lakes at their worst, from 1e4 to 1e7 nodes: a random surface (a pit in every ninth cell), bowls within bowls (each
-// spills into the next) and a comb (trenches that join only above their floors). `lake_scaling.py` draws the cost.
+// spills into the next) and a comb (trenches that join only above their floors). `scaling.py` draws the cost.
 #include "thalweg/terrain/lakes.hpp"
 #include "cases.hpp"
 #include "thalweg/terrain/route.hpp"

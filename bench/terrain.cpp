@@ -39,17 +39,36 @@ void route(benchmark::State& state) {
     per_item(state, dem.grid.size());
 }
 
+auto chain(const Dem& dem) {
+    const auto filled = terrain::fill(dem.grid, dem.z, dem.boundary);
+    auto directions = terrain::route(dem.grid, filled, dem.boundary);
+    terrain::resolve_flats(dem.grid, filled, dem.boundary, directions);
+    return terrain::graph_and_area(dem.grid, filled, std::move(directions));
+}
+
 void fill_flats_route_area(benchmark::State& state) {
     const Dem dem = rough_dem(state);
     const ThreadLimit limit(static_cast<int>(state.range(1)));
-    for (auto _ : state) {
-        const auto filled = terrain::fill(dem.grid, dem.z, dem.boundary);
-        auto directions = terrain::route(dem.grid, filled, dem.boundary);
-        terrain::resolve_flats(dem.grid, filled, dem.boundary, directions);
-        benchmark::DoNotOptimize(terrain::graph_and_area(dem.grid, filled, std::move(directions)));
-    }
+    for (auto _ : state) benchmark::DoNotOptimize(chain(dem));
     per_item(state, dem.grid.size());
 }
+
+/// The same on terrains of 4e5 to 1e8 cells that are as rough from cell to cell, whatever their number.
+void chain_by_cells(benchmark::State& state) {
+    const auto side = static_cast<Index>(state.range(0));
+    Dem dem{plane_grid(side, side, 30, 30), {}, {}};
+    dem.z = evenly_rough_terrain(dem.grid);
+    dem.boundary = terrain::data_edge(dem.grid, dem.z);
+    const ThreadLimit limit(static_cast<int>(state.range(1)));
+    for (auto _ : state) benchmark::DoNotOptimize(chain(dem));
+    state.counters["cells"] = dem.grid.size();
+    per_item(state, dem.grid.size());
+}
+BENCHMARK(chain_by_cells)
+    ->ArgNames({"side", "threads"})
+    ->ArgsProduct({{625, 1250, 2500, 5000, 10000}, {1, 2}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 /// Filled, with flats resolved: what flow divides on.
 struct RoutedDem {

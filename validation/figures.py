@@ -28,7 +28,10 @@ FIGURES = {
     r"kilometres": (TOLERANCE, "Whole runs in m and yr against km and kyr: worst node over relief", 1e-9),
     r"response_time": (ORDER, "Answer to uplift from the plain: mean error over relief", 1),
     r"two_solvers_(TIN|raster)_([\d.]+)": (SPREAD, "Steady solver and time stepping, {0}, n = {1}", None),
-    r"estimators_([\d.]+)_([\d.]+)_(\d+)": (SPREAD, "Blind estimates: θ = {0}, scatter {1}, heights in {2} m", None),
+    r"estimators_([\d.]+)_([\d.]+)_(\d+)_(\d+)": (
+        SPREAD, "Blind: θ = {0}, slopes scatter by {1}, steps {2} m, noise {3} m", None),
+    r"flint": (SPREAD, "Flint's q of 40 random trees, over the truth", None),
+    r"waves_([\d.]+)_(\d+)": (SPREAD, "A wave's knickpoints over the truth: slopes scatter by {0}, steps {1} m", None),
     r"steady_slopes": (TOLERANCE, "Steady slopes by time stepping: worst node against the law", 1e-8),
     r"steady_slopes_uneven": (TOLERANCE, "The same under uneven uplift, rain and rock", 1e-8),
     r"deposition_slopes": (TOLERANCE, "Steady slopes with deposition, n = 0.7, 1, 1.5: worst node against the law", 1e-6),

@@ -14,6 +14,9 @@ namespace thalweg::validation {
 /// Values by category, in the order in which the categories came: one column of dots each.
 class Categories {
   public:
+    Categories() = default;
+    explicit Categories(std::vector<std::pair<std::string, std::vector<double>>> all) : all_(std::move(all)) {}
+
     void add(const std::string& category, double value) {
         for (auto& [name, values] : all_) {
             if (name == category) return values.push_back(value);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -20,8 +21,19 @@ struct SteadyLaw {
     double slope_at_reference = 0.08;
     double reference_area_m2 = 3e6;
     double scatter = 0;  ///< standard deviation of ln S from cell to cell, fixed in place (erodibility)
+    /// A wave of faster uplift that has climbed this far in χ (m, for the reference area): slopes below it are so many
+    /// times as steep. It stands equally high in all rivers, which is what n = 1 gives.
+    double wave_chi_m = 0, below_wave = 1;
     double slope(double area_m2) const { return slope_at_reference * std::pow(area_m2 / reference_area_m2, -theta); }
 };
+
+/// Rise from a receiver at `chi_m` to a node that is `length_m` away and drains `area_m2`; χ is counted on.
+inline double rise(const SteadyLaw& law, double area_m2, double length_m, double& chi_m) {
+    const double step = length_m * std::pow(area_m2 / law.reference_area_m2, -law.theta);
+    const double below = std::clamp(law.wave_chi_m - chi_m, 0.0, step);
+    chi_m += step;
+    return law.slope_at_reference * (step + (law.below_wave - 1) * below);
+}
 
 /// Heights of a square raster whose rim is at 0: random noise is routed, the law's slopes are integrated up the trees,
 /// and both are repeated until no receiver changes (or 400 times: a few cells may go on exchanging receivers).
@@ -44,10 +56,12 @@ inline std::vector<double> steady_raster(const Grid& grid, const SteadyLaw& law,
         if (directions == previous) break;
         const auto graph = terrain::flow_graph(grid, height, directions);
         const auto area = terrain::accumulate(graph, terrain::cell_areas(grid));
+        std::vector<double> chi(grid.size(), 0);
         for (const Index node : graph.order) {
             const Index receiver = graph.receiver[node];
             if (receiver == none) continue;
-            height[node] = height[receiver] + graph.length[node] * law.slope(area[node]) * local[node];
+            chi[node] = chi[receiver];
+            height[node] = height[receiver] + rise(law, area[node], graph.length[node], chi[node]) * local[node];
         }
         previous = std::move(directions);
     }
