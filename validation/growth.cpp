@@ -92,7 +92,7 @@ TEST_CASE("Large networks beside Shreve's random model and nature, over 100 seed
 TEST_CASE("A grown terrain gives back its network", "[growth]") {
     for (const auto rule : {grow::UpstreamLink::keeps_line, grow::UpstreamLink::turns}) {
         Spread found, wrong, length, found_by_area, wrong_by_area;
-        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        for (std::uint64_t seed = 1; seed <= 8; ++seed) {
             study::Experiment e = square_experiment(rule, seed, 600);
             study::GrownTerrain t =
                 study::grown_terrain(e, study::growth_site(e, study::Messages{}), study::Messages{});
@@ -118,14 +118,15 @@ TEST_CASE("A grown terrain gives back its network", "[growth]") {
             }
         }
         fmt::print(
-            "growth, {}: with heads at the grown sources {} % of the junctions are found within two cells, {} % are "
+            "growth, {}: with heads at the grown sources {} % (least {:.1f} %) of the junctions are found within two "
+            "cells, {} % (most {:.1f} %) are "
             "false, length over the tree's {:.3f} to {:.3f}; with channels from an area that gives the same length {} "
             "% "
             "and {} %\n",
-            name_of(rule), found.text(), wrong.text(), quantile(length.values, 0), quantile(length.values, 1),
-            found_by_area.text(), wrong_by_area.text());
-        CHECK(found.mean() >= 95);
-        CHECK(wrong.mean() <= 5);
+            name_of(rule), found.text(), quantile(found.values, 0), wrong.text(), quantile(wrong.values, 1),
+            quantile(length.values, 0), quantile(length.values, 1), found_by_area.text(), wrong_by_area.text());
+        CHECK(quantile(found.values, 0) >= 95);
+        CHECK(quantile(wrong.values, 1) <= 5);
         CHECK(quantile(length.values, 0) > 0.97);
         CHECK(quantile(length.values, 1) < 1.03);
     }

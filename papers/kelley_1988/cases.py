@@ -11,7 +11,7 @@ import style
 from harness import Case, number, select, verdict
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
-from grown import draw_plan, draw_polygons, grown, heights, lines_of, network_measures, picture_of, rendered, valley_side_bulge  # noqa: E402
+from grown import draw_frame, draw_plan, draw_polygons, grown, heights, lines_of, network_measures, picture_of, rendered, valley_side_bulge  # noqa: E402
 
 TITLE = "Kelley, Malin & Nielson 1988: terrain simulation using a model of stream erosion"
 LEAD = """
@@ -75,6 +75,36 @@ def network_draw(rows, _, folders):
         axes.set_title(f"{row['stage']}: {number(row['links'])} links")
     draw_polygons(panels[-1], folders[0])
     panels[-1].set_title("initial: polygons")
+    return drawing
+
+
+# ---- the network growing
+
+def frames_compute(tools, quick):
+    summary, folder = grown(tools, "frames", f"output.frames={4 if quick else 8}", resolution=100)
+    rows = [{"frame": frame, "links": drawn["links"], "sources": drawn["sources"], "total_length_m": drawn["total_length_m"],
+             "share_of_length": drawn["total_length_m"] / summary["total_length_m"], "file": drawn["file"]}
+            for frame, drawn in enumerate(summary["frames"], 1)]
+    return rows, [folder]
+
+
+def frames_judge(rows, _):
+    longer = all(after["total_length_m"] > before["total_length_m"] for before, after in zip(rows, rows[1:]))
+    return [verdict("a film of the network growing (their section 7, future work then)", "to be done",
+                    f"{rows[0]['links']:.0f} to {rows[-1]['links']:.0f} links in {len(rows)} frames",
+                    "from the trunk alone to the whole, longer in every frame",
+                    rows[0]["links"] == 1 and rows[-1]["share_of_length"] == 1 and longer)]
+
+
+def frames_draw(rows, _, folders):
+    drawing = style.figure(4.2)
+    columns = (len(rows) + 1) // 2
+    panels = drawing.subplots(2, columns).ravel()
+    for axes, row in zip(panels, rows):
+        draw_frame(axes, os.path.join(folders[0], row["file"]))
+        axes.set_title(f"{number(row['links'])} link{'s' if row['links'] > 1 else ''}")
+    for axes in panels[len(rows):]:
+        axes.set_axis_off()
     return drawing
 
 
@@ -270,6 +300,10 @@ CASES = [
          columns=("stage", "channel_maintenance_m", "links", "max_shreve", "flint_q", "bifurcation_ratio"), palette=True,
          caption="The network at three constants of channel maintenance from the same outline and trunk, and the polygons of the "
                  "first, left and right of each link."),
+    Case("frames", "The network growing", None, frames_judge, frames_draw, compute=frames_compute, palette=True,
+         columns=("frame", "links", "sources", "total_length_m", "share_of_length"),
+         caption="Frames of the full-grown network as `output.frames` draws them, in red the streams that are new since the one "
+                 "before."),
     Case("wireframe", "Wireframe of 50 × 50", None, wireframe_judge, wireframe_draw, compute=wireframe_compute, palette=True,
          columns=("tension_channel", "bulge", "rows", "cols", "evaluations", "elevation_mean_m", "elevation_max_m"),
          caption="The surface under tension on cells of which 50 lie along the longer side, heights about three times too large."),

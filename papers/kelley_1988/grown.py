@@ -3,6 +3,7 @@
 import json
 import os
 import subprocess
+from xml.etree import ElementTree
 
 import numpy as np
 from matplotlib.path import Path
@@ -88,6 +89,22 @@ def draw_polygons(axes, folder):
         axes.fill(*places.T, facecolor=("#e9eef2", "#d7e3d2")[number % 2], edgecolor=style.MUTED, linewidth=0.4)
     for places, link in lines_of(folder, "links"):
         axes.plot(*places.T, color=style.RIVER, linewidth=0.5 + 0.2 * np.sqrt(magnitude_of(link)))
+    axes.set_aspect("equal")
+    axes.set_axis_off()
+
+
+def draw_frame(axes, path):
+    """A picture that `output.frames` made: polygons, outline and divides, channels, in its own colours."""
+    svg = "{http://www.w3.org/2000/svg}"
+    for shape in ElementTree.parse(path).getroot():
+        for polygon in shape.iter(svg + "polygon"):
+            places = np.array([pair.split(",") for pair in polygon.get("points").split()], dtype=float)
+            axes.fill(*places.T, facecolor=shape.get("fill"), edgecolor="none")
+        for line in shape.iter(svg + "path"):
+            for part in line.get("d").split("M")[1:]:
+                places = np.array([pair.split() for pair in part.split("L")], dtype=float)
+                axes.plot(*places.T, color=line.get("stroke"), linewidth=0.45 * float(line.get("stroke-width")))
+    axes.invert_yaxis()
     axes.set_aspect("equal")
     axes.set_axis_off()
 

@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "support/temp_folder.hpp"
@@ -318,4 +320,48 @@ TEST_CASE("Recovery counts junctions as a comparison of all pairs does") {
         CHECK(r.found_length_m == 360);
         CHECK(r.tree_length_m == 7);
     }
+}
+
+TEST_CASE("Frames show the network from the trunk to the whole, and do not change it") {
+    const TempFolder folder;
+    Experiment e = small_growth();
+    std::filesystem::create_directory(folder / "plain");
+    std::filesystem::create_directory(folder / "shown");
+    const Json plain = Json::parse(study::grow(e, folder / "plain", Messages{}));
+    CHECK_FALSE(std::filesystem::exists(folder / "plain" / "frames"));
+    e.output.frames = 6;
+    const GrownTerrain t = grown(e);
+    Json shown = Json::parse(study::grow(e, folder / "shown", Messages{}));
+    const Json frames = shown["frames"];
+    shown.erase("frames");
+    CHECK(without_seconds(shown) == without_seconds(plain));
+    REQUIRE(frames.size() == 6);
+    REQUIRE(t.stages.size() == 6);
+    CHECK(frames[0]["links"] == 1);
+    CHECK(frames[5]["links"] == plain["links"]);
+    CHECK(frames[5]["total_length_m"] == plain["total_length_m"]);
+    const auto count = [](const std::string& text, const std::string& what) {
+        std::size_t found = 0;
+        for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++found;
+        return found;
+    };
+    for (std::size_t i = 0; i < 6; ++i) {
+        INFO("frame " << i);
+        const std::size_t links = frames[i]["links"].get<std::size_t>();
+        if (i > 0) CHECK(links > frames[i - 1]["links"].get<std::size_t>());
+        CHECK(grow::total_area(t.stages[i]) == Approx(grow::total_area(t.growth.network)).epsilon(1e-9));
+        std::ifstream file(folder / "shown" / frames[i]["file"].get<std::string>());
+        const std::string svg(std::istreambuf_iterator<char>(file), {});
+        CHECK(count(svg, "<polygon ") == 2 * links);
+        CHECK(svg.rfind("</svg>") + 7 == svg.size());
+        CHECK(count(svg, "#1f5f99") + count(svg, "#c8402f") == links);
+        CHECK((count(svg, "#c8402f") > 0) == (i > 0));  // something is new in each but the first
+    }
+}
+
+TEST_CASE("Frames of a network too large to be drawn are refused") {
+    Experiment e = small_growth();
+    e.growth.channel_maintenance_m = 30;  // some 180 000 links
+    e.output.frames = 2;
+    CHECK_THAT(error_of([&] { grown(e); }), Catch::Contains("output.frames") && Catch::Contains("100000 at most"));
 }

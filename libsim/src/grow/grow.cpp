@@ -59,7 +59,7 @@ void reserve(GrowingTree& tree, double squares) {
 class Grower {
   public:
     Grower(GrowingTree tree, const Dials& dials, double basin_area);
-    Growth run(const Point& origin);
+    Growth run(const Point& origin, Stages&);
 
   private:
     double uniform(Draw, std::uint64_t number) const;
@@ -77,7 +77,8 @@ class Grower {
     bool is_wide_enough(const GrowingLink&, Side) const;
     std::array<double, 2> drawn_sidewalls(Index link) const;
     std::optional<DivideShares> drawn_divides(std::uint64_t draw_number) const;
-    StopReason grow_until_stopped();
+    StopReason grow_until_stopped(const Point& origin, Stages&);
+    void keep_stage(const Point& origin, Stages&) const;
 
     GrowingTree tree_;
     Dials dials_;
@@ -256,9 +257,16 @@ bool Grower::add_tributary(Index number) {
     return false;
 }
 
-StopReason Grower::grow_until_stopped() {
+void Grower::keep_stage(const Point& origin, Stages& stages) const {
+    const std::size_t kept = stages.networks.size();
+    if (kept == stages.links.size() || tree_.links.size() < stages.links[kept]) return;
+    stages.networks.push_back(finished(tree_, origin));
+}
+
+StopReason Grower::grow_until_stopped(const Point& origin, Stages& stages) {
     Index link = none;
     for (;; ++step_) {
+        keep_stage(origin, stages);
         if (density_reached()) return StopReason::density_reached;
         if (static_cast<double>(tree_.links.size()) > link_limit_) return StopReason::link_limit;
         if (!take_candidate(link)) {
@@ -274,8 +282,8 @@ StopReason Grower::grow_until_stopped() {
     }
 }
 
-Growth Grower::run(const Point& origin) {
-    const StopReason reason = grow_until_stopped();
+Growth Grower::run(const Point& origin, Stages& stages) {
+    const StopReason reason = grow_until_stopped(origin, stages);
     return {finished(tree_, origin), reason, lengthened_, refused_, last_resorts_};
 }
 
@@ -353,12 +361,17 @@ void check_against_basin(const Dials& dials, double area, double trunk) {
 }  // namespace
 
 Growth grow(const Basin& given, const Dials& dials) {
+    Stages none_kept;
+    return grow(given, dials, none_kept);
+}
+
+Growth grow(const Basin& given, const Dials& dials, Stages& stages) {
     check_dials(dials);
     const Basin basin = checked_basin(given);
     GrowingTree tree = cut_along_trunk(basin, dials.channel_maintenance_m);
     const double area = tree.links[0].area();
     check_against_basin(dials, area, tree.length_m);
-    return Grower(std::move(tree), dials, area).run(basin.outlet);
+    return Grower(std::move(tree), dials, area).run(basin.outlet, stages);
 }
 
 }  // namespace thalweg::grow

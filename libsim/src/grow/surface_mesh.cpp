@@ -171,7 +171,8 @@ void limit_slopes(const std::vector<double>& least, double steepest, SurfaceMesh
     }
 }
 
-/// Gradients along the channels: a junction, the upper end of one link and the lower end of others, takes the former's.
+/// Gradients along the channels. Junctions are level: there links of three directions meet, and the gradient of any one
+/// would tilt the beds of the others aside, so that water left them for their neighbour before it came to the junction.
 void set_channel_slopes(const Network& cut, const std::vector<HeightRange>& ranges, SurfaceMesh& mesh) {
     mesh.channel_slope_x.assign(mesh.size(), std::numeric_limits<double>::quiet_NaN());
     mesh.channel_slope_y = mesh.channel_slope_x;
@@ -181,10 +182,11 @@ void set_channel_slopes(const Network& cut, const std::vector<HeightRange>& rang
         const Point slope = (rise / dot(along, along)) * along;
         for (const Index vertex : cut.polygon(link, Side::left)) {
             const Index here = mesh.vertex_of[vertex];
-            const bool junction = vertex == cut.lower[link] && cut.downstream[link] != none;
-            if (mesh.on_channel[here] && !junction) {
-                mesh.channel_slope_x[here] = slope.x;
-                mesh.channel_slope_y[here] = slope.y;
+            const bool junction = (vertex == cut.lower[link] && cut.downstream[link] != none) ||
+                                  (vertex == cut.upper[link] && !cut.is_exterior(link));
+            if (mesh.on_channel[here]) {
+                mesh.channel_slope_x[here] = junction ? 0 : slope.x;
+                mesh.channel_slope_y[here] = junction ? 0 : slope.y;
             }
             if (vertex == cut.upper[link]) break;  // the polygon runs up the link first
         }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "study/grown_outputs.hpp"
+#include "study/growth_frames.hpp"
 #include "study/stopwatch.hpp"
 #include "study/terrain_files.hpp"
 #include "thalweg/core/error.hpp"
@@ -180,6 +181,7 @@ std::string write_all(Experiment e, const GrownTerrain& t, const std::filesystem
     const Measured m = measured(t);
     Json summary = summary_json(t, m);
     summary.update(write_terrain(e, t, folder));
+    if (e.output.frames > 0) summary["frames"] = write_frames(t, folder);
     io::write_geopackage(folder / "network.gpkg", grown_layers(e, t), t.site.crs_wkt);
     const Statistics& s = m.by_area.statistics;
     write_statistics(s, positions(t.elevation), folder);

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "study/grown_outputs.hpp"
+#include "study/growth_frames.hpp"
 #include "study/stopwatch.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/evolve/noise.hpp"
@@ -154,6 +155,15 @@ double area_for_length(const RoutedTerrain& terrain, double length_m) {
     return area[nodes.back()];
 }
 
+/// Grown once more, now that it is known how large the network becomes: growth takes a microsecond per link.
+std::vector<grow::Network> stages_of(const GrownTerrain& t, Index frames) {
+    grow::Stages stages{.links = links_shown(t.growth.network.size(), frames), .networks = {}};
+    stages.links.pop_back();
+    grow::grow(t.site.basin, t.dials, stages);
+    stages.networks.push_back(t.growth.network);
+    return std::move(stages.networks);
+}
+
 }  // namespace
 
 double surface_spacing_m(const grow::Dials& dials) { return 0.5 * dials.channel_maintenance_m; }
@@ -189,6 +199,7 @@ GrownTerrain grown_terrain(const Experiment& e, GrowthSite site, const Messages&
     const Stopwatch growing;
     t.growth = grow::grow(t.site.basin, t.dials);
     const grow::Network& network = t.growth.network;
+    if (e.output.frames > 0) t.stages = stages_of(t, e.output.frames);
     t.site.basin.outlet = network.origin;
     t.tree = grow::stream_network(network, grow::elevations(network, t.dials.flint, t.site.basin.base_level_m));
     t.seconds.grow = growing.seconds();

@@ -96,4 +96,11 @@ struct Growth {
 /// than C (stop = density), and for more than 1e8 C² of basin.
 Growth grow(const Basin&, const Dials&);
 
+/// The same, which leaves copies of the network behind as it grows.
+struct Stages {
+    std::vector<Index> links;       ///< ascending: a copy is taken as soon as there are so many or more
+    std::vector<Network> networks;  ///< copies; fewer than asked for where a network does not grow as large
+};
+Growth grow(const Basin&, const Dials&, Stages&);
+
 }  // namespace thalweg::grow

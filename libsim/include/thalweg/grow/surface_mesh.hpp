@@ -26,7 +26,7 @@ struct SurfaceMesh {
     std::vector<double> x, y;              ///< relative to the network's origin, m
     std::vector<double> height;            ///< m
     std::vector<std::uint8_t> on_channel;  ///< 1 for vertices on links
-    /// Per vertex, m/m: on channels the gradient along the link, of a junction that of the link below; NaN elsewhere.
+    /// Per vertex, m/m: on channels the gradient along the link, 0 at junctions; NaN elsewhere.
     std::vector<double> channel_slope_x, channel_slope_y;
     std::vector<Edge> lines;                      ///< pieces of links, divides and outline, by their vertices
     std::vector<std::array<Index, 3>> triangles;  ///< counter-clockwise, the whole basin

@@ -37,6 +37,8 @@ struct GrownTerrain {
     GrowthSite site;
     grow::Dials dials;
     grow::Growth growth;
+    std::vector<grow::Network>
+        stages;  ///< of the growth, the last one whole; none unless `output.frames` asks for them
     channel::StreamNetwork tree;
     GrownSurface surface;
     Raster elevation;  ///< on the map; NaN outside the basin
@@ -60,9 +62,9 @@ MeasureOptions measure_options(const GrownTerrain&);
 /// Cells of a grown terrain's raster in which its links begin.
 ChannelHeads grown_heads(const GrownTerrain&);
 
-/// Grows and writes summary.json, network.gpkg, elevation.tif, mesh.obj, the CSVs of the measured terrain and the
-/// resolved experiment.toml into an existing folder. Returns the text of summary.json. Throws Error as `growth_site`,
-/// `dials_of` and `grow::grow`.
+/// Grows and writes summary.json, frames/ with `output.frames`, network.gpkg, elevation.tif, mesh.obj, the CSVs of the
+/// measured terrain and the resolved experiment.toml into an existing folder. Returns the text of summary.json. Throws
+/// Error as `growth_site`, `dials_of` and `grow::grow`.
 std::string grow(const Experiment&, const std::filesystem::path& folder, const Messages&);
 
 /// The same in the basin of a catchment that has been cut out already.

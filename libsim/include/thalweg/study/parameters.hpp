@@ -134,6 +134,7 @@ struct Experiment {
         std::optional<double> base_depth_m;
         std::optional<Index> snapshots_every;
         std::optional<Index> checkpoint_every;
+        Index frames = 0;
     } output;
     struct {
         std::optional<Shape> outline;
@@ -419,6 +420,8 @@ void describe(AnyExperiment& e, Visit visit) {
     visit(Field{"output.checkpoint_every", "",
                 "steps after which a run saves itself, so that --resume can go on; absent: never", 1, 1e9},
           e.output.checkpoint_every);
+    visit(Field{"output.frames", "", "of grow: pictures of the network from the trunk to the whole; 0: none", 0, 1000},
+          e.output.frames);
     describe_growth(e, visit);
     visit(Field{"study.dem", "", "the DEM to be explained; a study needs it or a source"}, e.study.dem);
     visit(Field{"study.source", "", "where to fetch the DEM from, instead of study.dem (thalweg fetch --help)"},
