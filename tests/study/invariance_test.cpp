@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
+#include <tuple>
 
 #include "support/drawn_catchment.hpp"
 #include "support/steady_landscape.hpp"
@@ -300,5 +301,69 @@ TEST_CASE("Turning and mirroring a real DEM changes its statistics by no more th
         within("/slope_area/theta", 0.05);
         within("/chi/ksn_median", 0.03);
         within("/hack/exponent", 0.02);
+    }
+}
+
+namespace {
+
+/// The cell of a moved raster where a cell of the plain one has come to lie.
+struct Move {
+    Index rows, cols;  ///< of the plain raster
+    int turns;
+    bool mirrored;
+
+    std::pair<int, int> operator()(int row, int col) const {
+        int r = static_cast<int>(rows), c = static_cast<int>(cols);
+        if (mirrored) col = c - 1 - col;
+        for (int turn = 0; turn < turns; ++turn) {
+            std::tie(row, col) = std::pair(col, r - 1 - row);
+            std::swap(r, c);
+        }
+        return {row, col};
+    }
+};
+
+/// Receivers on the filled surface that are as steep as any, and how many: none on a flat.
+int steepest_ways(const RasterMeasurement& m, const Grid& grid, Index cell) {
+    double steepest = 0;
+    int ways = 0;
+    grid.neighbors(cell, [&](Index other, double length, Slot) {
+        const double slope = (m.terrain.elevation_m[cell] - m.terrain.elevation_m[other]) / length;
+        if (slope > steepest * (1 + 1e-12)) ways = 0;
+        if (slope > steepest) steepest = slope;
+        ways += slope > 0 && slope >= steepest * (1 - 1e-12);
+    });
+    return ways;
+}
+
+}  // namespace
+
+TEST_CASE("A real DEM turned or mirrored flows the same way in every cell that has one steepest way", "[invariance]") {
+    const Raster dem = jacksboro();
+    const RasterMeasurement plain = measure_raster(dem, {.channel_area_m2 = 4e5});
+    for (int symmetry = 1; symmetry < 8; ++symmetry) {
+        INFO(symmetry % 4 << " turns" << (symmetry >= 4 ? ", mirrored" : ""));
+        const Raster other = moved(dem, symmetry % 4, symmetry >= 4);
+        const RasterMeasurement m = measure_raster(other, {.channel_area_m2 = 4e5});
+        const Move move{dem.grid.rows, dem.grid.cols, symmetry % 4, symmetry >= 4};
+        const auto moved_cell = [&](Index cell) {
+            const auto [row, col] = move(static_cast<int>(dem.grid.row(cell)), static_cast<int>(dem.grid.col(cell)));
+            return static_cast<Index>(row) * other.grid.cols + static_cast<Index>(col);
+        };
+        Index without_reason = 0, by_ties = 0, in_flats = 0;
+        for (Index cell = 0; cell < dem.grid.size(); ++cell) {
+            const Index before = plain.terrain.graph.receiver[cell], after = m.terrain.graph.receiver[moved_cell(cell)];
+            const bool stays = before == none || after == none;
+            const bool same = stays ? before == after : moved_cell(before) == after;
+            if (same) continue;
+            const int ways = steepest_ways(plain, dem.grid, cell);
+            by_ties += ways > 1;
+            in_flats += ways == 0;
+            without_reason += ways == 1;
+        }
+        CHECK(without_reason == 0);
+        CHECK(by_ties > 500);
+        CHECK(by_ties < 0.05 * dem.grid.size());
+        CHECK(in_flats < 0.005 * dem.grid.size());
     }
 }
