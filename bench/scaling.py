@@ -16,7 +16,8 @@ CASES = {
     "lake": ("drain_worst_lakes", "nodes", "cpu_time", "surface",
              {"0": "random surface", "1": "bowl of bowls", "2": "comb"}, "routing and draining all lakes"),
     "growth": ("grow_network", "links", "cpu_time", None, {None: "growing"}, "growing the network"),
-    "chain": ("chain_by_cells", "cells", "real_time", "threads", {"1": "one thread", "2": "two threads"},
+    # one thread by its processor time, which others on the machine disturb less
+    "chain": ("chain_by_cells", "cells", {"1": "cpu_time", "2": "real_time"}, "threads", {"1": "one thread", "2": "two threads"},
               "fill, flats, D8 and area"),
 }
 NANOSECONDS = {"ns": 1, "us": 1e3, "ms": 1e6, "s": 1e9}
@@ -36,7 +37,7 @@ def series_of(runs, benchmark, counted, clock, key, names):
         given = arguments(run)
         items = float(run[counted] if counted in run else given[counted])
         name = names[given[key] if key else None]
-        time = run[clock] * NANOSECONDS[run["time_unit"]]
+        time = run[clock[given[key]] if isinstance(clock, dict) else clock] * NANOSECONDS[run["time_unit"]]
         times = found.setdefault(name, {})
         times[items] = min(time, times.get(items, math.inf))  # the least of repetitions
     return found
