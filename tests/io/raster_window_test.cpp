@@ -90,6 +90,24 @@ TEST_CASE("The band that is asked for holds the heights; one that is not there i
     CHECK_THAT(error_of([&] { io::read_raster(path, {.band = 4}); }), Contains("no band 4: it has 3"));
 }
 
+TEST_CASE("An alpha band hides cells of the band that is asked for, too", "[window]") {
+    const TempFolder temp;
+    const auto path = write(
+        temp, [](double x, double) { return x; }, 3);
+    {
+        const GDALDatasetUniquePtr file(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+        GDALRasterBand& alpha = *file->GetRasterBand(3);
+        std::vector<double> seen(40 * 50, 255);
+        seen[7] = 0;
+        REQUIRE(alpha.RasterIO(GF_Write, 0, 0, 50, 40, seen.data(), 50, 40, GDT_Float64, 0, 0, nullptr) == CE_None);
+        REQUIRE(alpha.SetColorInterpretation(GCI_AlphaBand) == CE_None);
+    }
+    const Raster second = io::read_raster(path, {.band = 2}).raster, first = io::read_raster(path).raster;
+    CHECK(std::isnan(first.values[7]));
+    CHECK(std::isnan(second.values[7]));
+    CHECK(second.values[8] == 2 * first.values[8]);
+}
+
 TEST_CASE("The sea is no data at and below its level, and all sea is refused", "[window]") {
     const TempFolder temp;
     const auto path = write(temp, plane);

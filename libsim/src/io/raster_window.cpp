@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <vector>
 
 #include "thalweg/core/error.hpp"
 
@@ -52,6 +53,16 @@ void add_window(CPLStringList& arguments, GDALDataset& dataset, const std::strin
     arguments.AddString("-srcwin");
     for (const int number : {cols.first, rows.first, cols.count, rows.count}) {
         arguments.AddString(fmt::format("{}", number).c_str());
+    }
+}
+
+/// The band of the heights, and the alpha band that hides some of them.
+void add_bands(CPLStringList& arguments, GDALDataset& dataset, int heights) {
+    const int last = dataset.GetRasterCount();
+    const bool has_alpha = dataset.GetRasterBand(last)->GetColorInterpretation() == GCI_AlphaBand && last != heights;
+    for (const int band : has_alpha ? std::vector{heights, last} : std::vector{heights}) {
+        arguments.AddString("-b");
+        arguments.AddString(fmt::format("{}", band).c_str());
     }
 }
 
@@ -122,10 +133,7 @@ DatasetPtr window_of(GDALDataset& dataset, const std::string& name, const ReadOp
     if (options.band == 1 && !options.window) return nullptr;
     CPLStringList arguments;
     for (const char* word : {"-of", "VRT"}) arguments.AddString(word);
-    if (options.band != 1) {
-        arguments.AddString("-b");
-        arguments.AddString(fmt::format("{}", options.band).c_str());
-    }
+    if (options.band != 1) add_bands(arguments, dataset, options.band);
     if (options.window) add_window(arguments, dataset, name, *options.window);
     const std::unique_ptr<GDALTranslateOptions, decltype(&GDALTranslateOptionsFree)> parsed(
         GDALTranslateOptionsNew(arguments.List(), nullptr), GDALTranslateOptionsFree);
