@@ -10,6 +10,7 @@
 #include <charconv>
 #include <cmath>
 #include <iostream>
+#include <memory>
 
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/parallel.hpp"
@@ -196,6 +197,24 @@ void run_into_folder(const CommonOptions& options, const std::string& figures,
         throw Error("the summary cannot be written to standard output; the results are in " + options.out);
     }
     if (!options.json && !options.quiet) std::cerr << "thalweg: results are in " << options.out << '\n';
+}
+
+void add_experiment_command(CLI::App& app, const ExperimentCommand& command, const ExperimentWork& work) {
+    struct Options {
+        CommonOptions common;
+        ExperimentOptions experiment;
+    };
+    auto options = std::make_shared<Options>();
+    CLI::App* added = app.add_subcommand(command.name, command.help);
+    add_experiment_options(*added, options->experiment);
+    add_common_options(*added, options->common, command.default_out);
+    added->callback([options, work, figures = std::string(command.figures)] {
+        const study::Experiment e = experiment(options->experiment);
+        const auto draws = options->common.no_figures ? study::Figures::leave_out : study::Figures::draw;
+        run_into_folder(options->common, figures, [&](const auto& folder, const study::Messages& messages) {
+            return work(e, draws, folder, messages);
+        });
+    });
 }
 
 void run_to_file(const FileOptions& options, const std::function<std::string(const study::Messages&)>& work,

@@ -10,6 +10,7 @@
 
 #include "thalweg/study/analyze.hpp"
 #include "thalweg/study/parameters.hpp"
+#include "thalweg/study/run.hpp"
 
 namespace thalweg::tools {
 
@@ -64,6 +65,17 @@ double parse_number(const std::string& option, const std::string& text, Sign);
 void run_into_folder(const CommonOptions&, const std::string& figures,
                      const std::function<std::string(const std::filesystem::path&, const study::Messages&)>& work,
                      const std::function<std::string()>& left_behind = {});
+
+/// A subcommand that makes one folder of one experiment file.
+struct ExperimentCommand {
+    const char* name;
+    const char* help;
+    const char* figures;      ///< as run_into_folder takes them
+    const char* default_out;  ///< where results go without --out
+};
+using ExperimentWork = std::function<std::string(const study::Experiment&, study::Figures, const std::filesystem::path&,
+                                                 const study::Messages&)>;
+void add_experiment_command(CLI::App&, const ExperimentCommand&, const ExperimentWork&);
 
 /// The same for a command that writes one file: `work` returns its contents.
 struct FileOptions {

@@ -21,6 +21,7 @@ struct Options {
     std::string uplift, uplift_sd, n, deposition_g, theta_fixed, area_min, area_max;
     std::string method = "slope-area";
     std::string from = "nodes";
+    std::string heads;
     std::string seed;
 };
 
@@ -65,6 +66,12 @@ void run_growth(const Options& options) {
     study::GrowthFitOptions fit{.read = read_options(options.dem),
                                 .measure = measure_options(options.dem),
                                 .outlet = outlet_request(options.outlet)};
+    if (!options.heads.empty()) {
+        if (fit.measure.channel_area_m2) {
+            throw Error("--heads and --channel-area-m2 both say where channels begin: give one of them");
+        }
+        fit.heads = options.heads;
+    }
     if (!options.seed.empty()) {
         fit.seed = static_cast<std::uint64_t>(parse_number("--seed", options.seed, Sign::not_negative));
     }
@@ -76,6 +83,7 @@ void run_growth(const Options& options) {
 void run(const Options& options) {
     if (options.method == "growth") return run_growth(options);
     if (!options.seed.empty()) throw Error("--seed is for --method growth: nothing else here is random");
+    if (!options.heads.empty()) throw Error("--heads is for --method growth: a slope-area curve needs no channels");
     const study::FitOptions fit = fit_options(options);
     run_into_folder(options.common, "fit", [&](const auto& folder, const study::Messages& m) {
         return study::fit(options.target, fit, folder, m).json;
@@ -105,6 +113,8 @@ void add_fit(CLI::App& app) {
         ->check(CLI::IsMember({"nodes", "raster"}))
         ->capture_default_str();
     add_outlet_options(*command, options->outlet);
+    command->add_option("--heads", options->heads,
+                        "of growth: points where channels begin, instead of a drainage area");
     command->add_option("--seed", options->seed, "of growth: another seed [default: 1]");
     add_dem_options(*command, options->dem);
     add_common_options(*command, options->common, "fit");

@@ -12,6 +12,7 @@ from harness import Case, number, select, verdict
 
 sys.path.insert(0, os.path.dirname(os.path.realpath(__file__)))
 from grown import draw_frame, draw_plan, draw_polygons, grown, heights, lines_of, network_measures, picture_of, rendered, valley_side_bulge  # noqa: E402
+from later import reshaped_compute, reshaped_draw, reshaped_judge, roughness_compute, roughness_draw, roughness_judge, roughness_text  # noqa: E402
 
 TITLE = "Kelley, Malin & Nielson 1988: terrain simulation using a model of stream erosion"
 LEAD = """
@@ -140,10 +141,11 @@ def wireframe_draw(rows, _, folders):
     z = heights(folders[0])[::-1]
     y, x = np.mgrid[0:z.shape[0], 0:z.shape[1]]
     drawing = style.figure(3.2, 6.0)
-    axes = drawing.add_subplot(projection="3d", computed_zorder=False)
+    drawing.set_layout_engine("none")
+    axes = drawing.add_axes((0, -0.42, 1, 1.9), projection="3d", computed_zorder=False)  # beyond the page: it has wide margins
     axes.plot_surface(x, y, z, color="white", edgecolor=style.INK, linewidth=0.25, shade=False, rstride=1, cstride=1)
     axes.view_init(38, -68)
-    axes.set_box_aspect((z.shape[1], z.shape[0], 14), zoom=1.5)
+    axes.set_box_aspect((z.shape[1], z.shape[0], 14), zoom=1.15)
     axes.set_axis_off()
     return drawing
 
@@ -315,4 +317,12 @@ CASES = [
          timed=True, columns=("width", "height", "rays_per_pixel", "seconds_render")),
     Case("dials", "What each dial does", None, dials_judge, dials_draw, dials_text, compute=dials_compute, palette=True,
          caption="Each dial low and, below, high, all others as they were, the same seed. Widths by magnitude."),
+    Case("reshaped", "Rivers and diffusion reshape it (section 7)", None, reshaped_judge, reshaped_draw, compute=reshaped_compute,
+         palette=True, columns=("years", "elevation_mean_m", "elevation_max_m", "ridge_curvature_per_km", "theta"),
+         caption="The grown terrain, and what rivers (k = 2e-6, m = 0.5) and creep (0.02 m²/yr) make of it without uplift, the "
+                 "rim held."),
+    Case("roughness", "Roughness by subdivision (section 7)", None, roughness_judge, roughness_draw, roughness_text, compute=roughness_compute,
+         palette=True, columns=("hurst", "exponent", "exponent_wide", "roughness_sd_m", "junctions_recovered"),
+         caption="The surface under tension as it is, and roughened by recursive subdivision below the scale of its triangles, "
+                 "12 m over half the constant of channel maintenance, with two Hurst exponents."),
 ]

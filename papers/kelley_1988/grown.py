@@ -70,7 +70,7 @@ def draw_plan(axes, folder, shaded=False):
         source = gdal.Open(os.path.join(folder, "elevation.tif"))
         west, dx, _, north, _, dy = source.GetGeoTransform()
         z = heights(folder)
-        y, x = np.gradient(np.where(np.isnan(z), np.nanmin(z), z), dx)
+        y, x = np.gradient(z, dx)  # unknown beside the rim: no slope down to what lies outside
         shade = (1 + x - y) / np.sqrt(3) / np.sqrt(1 + x**2 + y**2)
         axes.imshow(np.where(np.isnan(z), np.nan, shade), cmap="gray", vmin=-0.2, vmax=1.1,
                     extent=(west, west + dx * z.shape[1], north + dy * z.shape[0], north))

@@ -16,6 +16,7 @@ import unittest
 from html.parser import HTMLParser
 
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from osgeo import osr
 
@@ -200,6 +201,19 @@ class Figures(unittest.TestCase):
         line, why = sides.theory(folder, side)
         self.assertIsNone(line)
         self.assertIn("uplift (radial)", why)
+
+    def test_the_key_of_a_map_fits_the_figure_however_many_orders_there_are(self):
+        for highest in (1, 4, 7, 12):
+            drawing = Figure(figsize=(6.5, 4))
+            FigureCanvasAgg(drawing)
+            maps.draw_key(drawing.add_subplot(), 1, highest, [("catchment", 0.5), ("the studied one", 1.4)])
+            key = drawing.axes[0].get_legend()
+            words = [text.get_text() for text in key.get_texts()]
+            self.assertLessEqual(key.get_window_extent(drawing.canvas.get_renderer()).width, drawing.bbox.width)
+            self.assertEqual(words[0], "river of Strahler order 1")
+            self.assertEqual(words[-2:], ["catchment", "the studied one"])
+            if highest > 1:
+                self.assertIn(f"order {highest}", words)
 
     def test_the_area_of_a_dot_follows_its_length(self):
         side = curves.Side("one", style.LOOK["real"], cloud=([1e6, 2e6, 0], [0.1, 0.01, 0.1], np.array([10.0, 100.0, 1e9])))

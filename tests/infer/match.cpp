@@ -48,6 +48,28 @@ TEST_CASE("A linear model with normal noise gives the estimate that theory gives
     }
 }
 
+TEST_CASE("What the last round moved tells whether more rounds would change the estimate") {
+    const auto rounds = [](Index count, Index draws) {
+        return match(bent, std::vector<double>{2.5, 3},
+                     {.ranges = {{-2, 2}, {-3, 3}}, .rounds = count, .draws = draws, .seed = 5});
+    };
+    const Match one = rounds(1, 300), two = rounds(2, 300), five = rounds(5, 300);
+    CHECK(one.rounds == 1);
+    CHECK(five.rounds == 5);
+    double moved = 0;  // by the second round, in its errors
+    for (std::size_t i = 0; i < 2; ++i) {
+        moved = std::max(
+            moved, std::abs(two.parameters[i].value - one.parameters[i].value) / two.parameters[i].standard_error);
+    }
+    CHECK(two.last_step == Approx(moved));
+    CHECK(one.last_step > 2);  // from the middle of the ranges
+    CHECK(five.last_step < 0.5);
+    const Match nothing = match(bent, std::vector<double>{std::nan(""), std::nan("")},
+                                {.ranges = {{-2, 2}, {-3, 3}}, .rounds = 3, .draws = 100, .seed = 5});
+    CHECK(nothing.rounds == 0);
+    CHECK_FALSE(nothing.last_step <= 1);
+}
+
 TEST_CASE("A parameter that changes nothing stays in the middle of its range, with an error as wide") {
     const auto model = [](std::span<const double> p, std::uint64_t seed) {
         Random random(seed, 11);

@@ -9,6 +9,10 @@
 
 #include "support/temp_folder.hpp"
 #include "thalweg/mesh/triangulate.hpp"
+#include "thalweg/study/channel_heads.hpp"
+#include "thalweg/study/compare.hpp"
+#include "thalweg/study/fit.hpp"
+#include "thalweg/study/grow.hpp"
 #include "thalweg/study/parameters.hpp"
 
 using namespace thalweg;
@@ -56,7 +60,89 @@ TEST_CASE("A fit of growth writes a basin and dials that read back as they were 
     const auto& c = fit["growth"]["channel_maintenance_m"];
     CHECK(area / grow::total_length(grown.network) == Approx(c["estimate"].get<double>()).epsilon(0.02));
     for (const char* key : {"k", "m", "theta", "ks", "reduced_chi2"}) CHECK(fit[key].is_null());
+    CHECK(fit["iterations"] == 4);
+    CHECK(fit["converged"].is_boolean());
+    CHECK(dials.divides == grow::Divides::shares);
+    CHECK(dials.divide_above.mean == estimate("divide_above"));
+    CHECK(dials.divide_across.delta == estimate("delta_divide_across"));
     CHECK(fit["notes"].size() > 1);
+}
+
+namespace {
+
+/// A grown folder, 435 links on 8 km, with its sources in network.gpkg.
+fs::path grown_folder(const TempFolder& folder) {
+    Experiment e;
+    e.seed = 3;
+    e.basin.outline = std::vector<Point>{{0, 0}, {8000, 0}, {8000, 8000}, {0, 8000}};
+    e.basin.trunk = std::vector<Point>{{4000, 0}, {4000, 6000}};
+    e.basin.base_level_m = 50;
+    e.growth.channel_maintenance_m = 600;
+    e.output.resolution = 500;
+    fs::create_directory(folder / "grown");
+    study::grow(e, folder / "grown", {});
+    return folder / "grown";
+}
+
+}  // namespace
+
+TEST_CASE("A grown folder with its own sources as heads is measured as it grew") {
+    const TempFolder folder;
+    const fs::path grown = grown_folder(folder);
+    const Json tree = Json::parse(text_of(grown / "summary.json"));
+    fs::create_directory(folder / "fit");
+    GrowthFitOptions options;
+    options.heads = grown / "network.gpkg";
+    const Json fit = Json::parse(fit_growth(grown, options, folder / "fit", {}));
+    CHECK(fit["growth"]["channel_maintenance_m"]["estimate"].get<double>() == Approx(600).epsilon(0.05));
+    CHECK(fit["growth"]["flint_q"]["estimate"].get<double>() == Approx(-0.6).margin(0.05));
+    CHECK(fit["growth"]["flint_p"]["estimate"].get<double>() == Approx(0.1).epsilon(0.15));
+    const auto links = fit["measures"]["exterior_links"]["count"].get<double>() +
+                       fit["measures"]["interior_links"]["count"].get<double>();
+    CHECK(links == Approx(tree["links"].get<double>()).epsilon(0.05));
+    CHECK(fit["measures"]["channel_area_m2"].is_null());
+    const GrowthSite site = growth_site(read_experiment(folder / "fit" / "growth.toml"), {});
+    CHECK(std::abs(mesh::polygon_area(site.basin.outline)) == Approx(6.4e7).epsilon(0.02));
+    CHECK(site.basin.outlet.x == Approx(4000).margin(100));
+    CHECK(site.basin.outlet.y == Approx(0).margin(40));
+}
+
+TEST_CASE("The slope-area fit and compare take a grown folder") {
+    const TempFolder folder;
+    const fs::path grown = grown_folder(folder);
+    for (const char* name : {"fit", "same", "other"}) fs::create_directory(folder / name);
+    const Json fitted = Json::parse(study::fit(grown, {}, folder / "fit", {}).json);
+    // The terrain knows no erosion law, but Flint's gradients fall with magnitude as q, and areas grow with magnitude.
+    CHECK(fitted["theta"].get<double>() > 0.1);
+    CHECK(fitted["theta"].get<double>() < 0.9);
+    const Json same = Json::parse(compare(grown, grown, {}, folder / "same", {}));
+    std::size_t measured = 0;
+    for (const Json& aspect : same["aspects"]) {
+        if (!aspect["distance"].is_number()) continue;
+        ++measured;
+        CHECK(aspect["distance"].get<double>() == Approx(0).margin(1e-12));
+    }
+    CHECK(measured >= 8);
+    const Json other = Json::parse(compare(grown, jacksboro, {}, folder / "other", {}));
+    double sum = 0;
+    for (const Json& aspect : other["aspects"]) {
+        if (aspect["distance"].is_number()) sum += std::abs(aspect["distance"].get<double>());
+    }
+    CHECK(sum > 0.1);
+}
+
+TEST_CASE("An analyze folder whose channels begin at heads asks for them again") {
+    const TempFolder folder;
+    const fs::path grown = grown_folder(folder);
+    fs::create_directory(folder / "measured");
+    fs::create_directory(folder / "fit");
+    const NamedRaster dem = read_dem(grown / "elevation.tif", {}, {});
+    MeasureOptions options;
+    options.channels = ChannelRule::heads;
+    options.heads = read_channel_heads(grown / "network.gpkg", dem.raster, {});
+    analyze(dem, options, folder / "measured", {});
+    const std::string error = test::error_of([&] { fit_growth(folder / "measured", {}, folder / "fit", {}); });
+    CHECK(error.find("--heads") != std::string::npos);
 }
 
 TEST_CASE("The same seed finds the same dials to the last byte") {

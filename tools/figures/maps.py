@@ -246,14 +246,20 @@ def draw_rivers(axes, path, terrain, lowest):
 
 
 def draw_key(axes, lowest, highest, outlines):
-    """What the widths of the rivers and the outlines mean, in axes of its own; `outlines`: (words, line width)."""
+    """What the widths of the rivers and the outlines mean, in axes of its own; `outlines`: (words, line width). One line
+    as wide as the figure at most: of many orders only every second or third one has room, and the highest."""
     axes.set_axis_off()
-    handles = [Line2D([], [], color=style.RIVER, linewidth=river_width(order, lowest), label=f"order {order}")
-               for order in range(lowest, highest + 1)]
-    if handles:
-        handles[0].set_label(f"river of Strahler order {lowest}")
-    handles += [Line2D([], [], color=style.DIVIDE, linewidth=width, label=words) for words, width in outlines]
-    axes.legend(handles=handles, loc="center", ncol=len(handles), frameon=False, handlelength=1.8, columnspacing=1.4)
+    for step in range(1, max(2, highest - lowest + 2)):
+        orders = sorted({*range(lowest, highest + 1, step), *([highest] if highest >= lowest else [])})
+        handles = [Line2D([], [], color=style.RIVER, linewidth=river_width(order, lowest), label=f"order {order}")
+                   for order in orders]
+        if handles:
+            handles[0].set_label(f"river of Strahler order {lowest}")
+        handles += [Line2D([], [], color=style.DIVIDE, linewidth=width, label=words) for words, width in outlines]
+        key = axes.legend(handles=handles, loc="center", ncol=len(handles), frameon=False, handlelength=1.8, columnspacing=1.4)
+        figure = axes.get_figure()
+        if key.get_window_extent(figure.canvas.get_renderer()).width <= 0.94 * figure.bbox.width:
+            return
 
 
 def draw_basins(axes, path, terrain, width=0.5):

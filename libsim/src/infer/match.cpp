@@ -6,6 +6,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/parallel.hpp"
@@ -177,6 +178,16 @@ Belief updated(const Belief& before, const Response& response, const Vector& tar
 
 double error_of(const Belief& belief, Eigen::Index i) { return std::sqrt(std::max(0.0, belief.covariance(i, i))); }
 
+/// In errors of the parameters after it.
+double largest_step(const Vector& mean_before, const Belief& after) {
+    double largest = 0;
+    for (Eigen::Index i = 0; i < mean_before.size(); ++i) {
+        const double step = std::abs(after.mean[i] - mean_before[i]);
+        if (step > 0) largest = std::max(largest, step / error_of(after, i));
+    }
+    return largest;
+}
+
 std::vector<std::array<double, 2>> box_about(const Belief& belief, std::span<const std::array<double, 2>> ranges) {
     std::vector<std::array<double, 2>> box;
     for (std::size_t i = 0; i < ranges.size(); ++i) {
@@ -190,7 +201,7 @@ std::vector<std::array<double, 2>> box_about(const Belief& belief, std::span<con
 }
 
 Match result_of(const Belief& after, const Belief& before, std::span<const std::array<double, 2>> ranges) {
-    Match match{{}, {}, 0};
+    Match match{{}, {}, 0, 0, 0};
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const auto& [low, high] = ranges[i];
         const auto at = static_cast<Eigen::Index>(i);
@@ -210,19 +221,25 @@ Match match(const RandomModel& model, std::span<const double> target, const Matc
     Belief belief = before;
     std::vector<std::array<double, 2>> box = options.ranges;
     std::vector<Eigen::Index> used;
-    Index outcomes = 0;
+    Index outcomes = 0, rounds = 0;
+    double last_step = std::numeric_limits<double>::infinity();
     for (Index round = 0; round < options.rounds; ++round) {
         const Round all = draw_round(model, options, box, round);
         if (round == 0) used = statistics_in_use(all, target);
         if (used.empty()) break;
         const Round drawn = whole_outcomes(all, used);
         check_enough(drawn, options.draws);
+        const Vector mean_before = belief.mean;
         belief = updated(before, Response(drawn), measured(used), box);
+        last_step = largest_step(mean_before, belief);
+        ++rounds;
         box = box_about(belief, options.ranges);
         outcomes = static_cast<Index>(drawn.parameters.rows());
     }
     Match result = result_of(belief, before, options.ranges);
     result.outcomes = outcomes;
+    result.rounds = rounds;
+    result.last_step = last_step;
     return result;
 }
 

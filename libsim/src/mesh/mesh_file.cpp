@@ -42,7 +42,7 @@ void write_file(std::ofstream& file, const TriangleSurface& surface, const std::
         return;
     }
     if (!comment.empty()) file << "# " << comment << '\n';
-    file.precision(10);
+    file.precision(7);  // as many as importers keep; every further digit makes the file a tenth larger
     CGAL::IO::write_OBJ(file, vertices, surface.triangles);
 }
 

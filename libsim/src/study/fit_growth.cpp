@@ -12,6 +12,7 @@
 #include "thalweg/channel/valleys.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/io/table_file.hpp"
+#include "thalweg/study/channel_heads.hpp"
 #include "thalweg/study/output_folder.hpp"
 #include "thalweg/study/parameters.hpp"
 
@@ -124,9 +125,13 @@ std::string fit_json(const GrowthFit& fit, const std::string& measured_on) {
     }
     Json json{{"method", "growth"}, {"measured_on", measured_on}};
     add_unknown(json, notes);
-    json["iterations"] = 4;
-    json["converged"] = true;
-    json["message"] = "dials found by growing networks in the basin and regressing what they measure";
+    json["iterations"] = fit.dials.rounds;
+    json["converged"] = fit.dials.converged();
+    json["message"] = fmt::format(
+        "dials found by growing networks in the basin and regressing what they measure; the last of {} rounds moved "
+        "the "
+        "dial that it moved most by {:.2g} of its standard errors",
+        fit.dials.rounds, fit.dials.last_step);
     json["identifiable"] = identifiable;
     json["growth"] = dials_json(fit.dials);
     json["measures"] = measures_json(fit);
@@ -179,7 +184,13 @@ Target target_of(const fs::path& path, const GrowthFitOptions& options) {
             if (options.outlet) throw Error("--outlet applies to DEMs: analyze the DEM anew with it");
             Target target{path / "filled.tif", options.measure, "analyze folder"};
             const Json area = read_json(path / "summary.json")["channels"]["threshold_area_m2"];
-            if (area.is_number()) target.measure.channel_area_m2 = area.get<double>();
+            if (options.heads) return target;
+            if (!area.is_number()) {
+                throw Error(fmt::format(
+                    "{}: its channels do not begin at a drainage area; give the points where they do with --heads",
+                    path.string()));
+            }
+            target.measure.channel_area_m2 = area.get<double>();
             return target;
         }
         case ResultKind::simulated:
@@ -193,9 +204,17 @@ Target target_of(const fs::path& path, const GrowthFitOptions& options) {
 
 Catchment catchment_of(NamedRaster& dem, MeasureOptions& measure, const GrowthFitOptions& options,
                        const Messages& messages) {
-    if (!options.outlet) return largest_complete_catchment(dem.raster, measure);
-    dem = cut_to_outlet(dem, *options.outlet, measure, messages);
-    return {.raster = dem.raster, .outlet = *measure.catchment_outlet};
+    if (options.outlet) dem = cut_to_outlet(dem, *options.outlet, measure, messages);
+    if (options.heads) {
+        measure.channels = ChannelRule::heads;
+        measure.heads = read_channel_heads(*options.heads, dem.raster, messages);
+    }
+    Catchment catchment = measure.catchment_outlet
+                              ? Catchment{.raster = dem.raster, .outlet = *measure.catchment_outlet}
+                              : largest_complete_catchment(dem.raster, measure);
+    // Those in other basins are beside the matter: nothing to warn of.
+    if (options.heads) measure.heads = read_channel_heads(*options.heads, catchment.raster, {});
+    return catchment;
 }
 
 /// A trunk that sees hardly anything of a winding basin leaves growth no room.
@@ -227,7 +246,8 @@ channel::GrowthMeasures growth_measures(const Raster& raster, const RasterMeasur
 GrowthFit fit_growth(const Catchment& catchment, const MeasureOptions& options, std::uint64_t seed) {
     MeasureOptions measuring = options;
     measuring.catchment_outlet = catchment.outlet;
-    if (!measuring.channel_area_m2) measuring.channel_area_m2 = catchment_channel_area(catchment.raster);
+    if (!measuring.channel_area_m2 && !measuring.heads)
+        measuring.channel_area_m2 = catchment_channel_area(catchment.raster);
     const RasterMeasurement m = measure_raster(catchment.raster, measuring);
     GrowthFit fit{.site = growth_site(catchment),
                   .channel_area_m2 = m.statistics.channels.threshold_area_m2,
@@ -235,10 +255,11 @@ GrowthFit fit_growth(const Catchment& catchment, const MeasureOptions& options, 
                   .dials = {},
                   .notes = {}};
     fit.notes = fit.site.warnings;
+    const std::string begin = measuring.heads ? fmt::format("the {} heads given", measuring.heads->cells.size())
+                                              : fmt::format("{:.4g} m2 of drainage area", fit.channel_area_m2);
     fit.notes.push_back(fmt::format(
-        "channel_maintenance_m: channels are taken to begin at {:.4g} m2 of drainage area, and their length "
-        "is freed of D8's {:.1f} %",
-        fit.channel_area_m2, 100 * (d8_length_factor - 1)));
+        "channel_maintenance_m: channels are taken to begin at {}, and their length is freed of D8's {:.1f} %", begin,
+        100 * (d8_length_factor - 1)));
     fit.dials = fit_dials(fit.site.basin, fit.measures, seed);
     check_grown(fit.dials);
     return fit;
@@ -269,6 +290,8 @@ std::string fit_growth(const fs::path& path, const GrowthFitOptions& options, co
     Target target = target_of(path, options);
     NamedRaster dem = read_dem(target.file, options.read, messages);
     messages.progress("measuring");
+    const bool is_grown = kind_of(path) == ResultKind::grown;
+    if (is_grown && !options.outlet) target.measure.catchment_outlet = grown_outlet(path, dem.raster);
     const Catchment catchment = catchment_of(dem, target.measure, options, messages);
     messages.progress("growing networks to find the dials");
     GrowthFit fit = fit_growth(catchment, target.measure, options.seed);

@@ -226,6 +226,8 @@ DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, s
         return telling_measures(grown_measures(basin, with(fit.dials, matched, values), number));
     };
     const infer::Match found = infer::match(model, telling_measures(m), options);
+    fit.rounds = found.rounds;
+    fit.last_step = found.last_step;
     std::vector<double> values;
     for (std::size_t i = 0; i < matched.size(); ++i) {
         values.push_back(found.parameters[i].value);

@@ -27,6 +27,8 @@ struct Match {
     std::vector<Estimate> parameters;      ///< within their ranges
     std::vector<std::uint8_t> identified;  ///< 1 where the statistics have at least halved what the range left open
     Index outcomes;                        ///< with all statistics, of those of the last round
+    Index rounds;                          ///< fewer than asked for where no statistic can be used
+    double last_step;  ///< by how many of its standard errors the last round moved the parameter that it moved most
 };
 
 /// The parameters of a random model, given the statistics of one outcome: what is measured need not be what was put in,

@@ -9,7 +9,7 @@
 namespace thalweg::mesh {
 
 enum class MeshFormat {
-    obj,  ///< Wavefront, text, ten digits
+    obj,  ///< Wavefront, text, seven digits
     ply   ///< Polygon file format, binary little-endian, vertices as doubles
 };
 

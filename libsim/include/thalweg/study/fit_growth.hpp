@@ -36,14 +36,16 @@ GrowthFit fit_growth(const Catchment&, const MeasureOptions&, std::uint64_t seed
 struct GrowthFitOptions {
     io::ReadOptions read;
     MeasureOptions measure;
-    std::optional<OutletRequest> outlet = {};  ///< of a DEM what drains to it, instead of its largest basin
+    std::optional<OutletRequest> outlet = {};         ///< of a DEM what drains to it, instead of its largest basin
+    std::optional<std::filesystem::path> heads = {};  ///< points where channels begin, instead of at a drainage area
     std::uint64_t seed = 1;
 };
 
 /// The same for the largest complete catchment (or that above an outlet) of a DEM, of an analyze folder (its
-/// filled.tif, with its channel area) or of a simulate folder (its elevation.tif), written into an existing folder:
-/// fit.json, fit.csv (what was measured beside what grown networks measure), growth.toml and basin.gpkg (the outline
-/// and trunk that it names), from which `thalweg grow` grows the like. Returns the text of fit.json.
+/// filled.tif, with its channel area, or with the heads given) or of a simulate folder (its elevation.tif), written
+/// into an existing folder: fit.json, fit.csv (what was measured beside what grown networks measure), growth.toml and
+/// basin.gpkg (the outline and trunk that it names), from which `thalweg grow` grows the like. Returns the text of
+/// fit.json.
 std::string fit_growth(const std::filesystem::path& target, const GrowthFitOptions&,
                        const std::filesystem::path& folder, const Messages&);
 

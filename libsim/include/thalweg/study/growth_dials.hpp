@@ -32,12 +32,16 @@ struct DialsFit {
     std::vector<FittedDial> table;
     std::vector<MeasureCheck> check;
     std::vector<std::string> notes;
+    Index rounds = 0;      ///< of growing and regressing
+    double last_step = 0;  ///< as infer::Match::last_step
+    bool converged() const { return last_step <= 1; }
 };
 
 /// Dials with which networks grow in a basin that measure like the one that was measured. C, Flint's law and
-/// the divides' shares are taken as measured. The others are found by growing (infer::match): the place of a junction on its stream, the way to the
-/// divide, sidewalls and sides are changed by what grows later, so the dial is not what is measured. The check is over
-/// 20 further seeds. Throws Error for what `grow` refuses, and for measures without C or Flint's law.
+/// the divides' shares are taken as measured. The others are found by growing (infer::match): the place of a junction
+/// on its stream, the way to the divide, sidewalls and sides are changed by what grows later, so the dial is not what
+/// is measured. The check is over 20 further seeds. Throws Error for what `grow` refuses, and for measures without C or
+/// Flint's law.
 DialsFit fit_dials(const grow::Basin&, const channel::GrowthMeasures&, std::uint64_t seed);
 
 }  // namespace thalweg::study
