@@ -54,7 +54,9 @@ Links number_links(const FlowGraph& graph, std::span<const std::uint8_t> channel
 }
 
 /// Lays the nodes of every link out in a row, running downstream.
-void collect_nodes(std::span<const Index> order, const Links& links, StreamNetwork& network) {
+StreamNetwork laid_out(Links links, std::span<const Index> order) {
+    StreamNetwork network;
+    network.downstream = std::move(links.downstream);
     const Index count = network.size();
     network.offset.assign(count + 1, 0);
     for (const Index node : order) {
@@ -68,6 +70,14 @@ void collect_nodes(std::span<const Index> order, const Links& links, StreamNetwo
         const Index link = links.of_node[node];
         if (link != none) network.nodes[--next[link]] = node;
     }
+    return network;
+}
+
+/// Of values per node those of each link's upper end.
+std::vector<Index> at_upper_ends(const StreamNetwork& network, const std::vector<Index>& values) {
+    std::vector<Index> picked;
+    for (Index link = 0; link < network.size(); ++link) picked.push_back(values[network.nodes[network.offset[link]]]);
+    return picked;
 }
 
 void measure_links(const FlowGraph& graph, std::span<const std::uint8_t> donors,
@@ -162,16 +172,9 @@ StreamNetwork stream_network(const FlowGraph& graph, std::span<const std::uint8_
                              std::span<const double> drainage_area_m2, std::span<const double> elevation_m) {
     const std::vector<Index> nodes = channel_order(graph, channel);
     const auto donors = donor_counts(graph, channel, nodes);
-    Links links = number_links(graph, channel, nodes, donors);
-    StreamNetwork network;
-    network.downstream = std::move(links.downstream);
-    collect_nodes(nodes, links, network);
-    const auto order = orders_along(graph, channel, nodes);
-    const auto magnitude = magnitudes_along(graph, channel, nodes);
-    for (Index link = 0; link < network.size(); ++link) {
-        network.strahler.push_back(order[network.nodes[network.offset[link]]]);
-        network.shreve.push_back(magnitude[network.nodes[network.offset[link]]]);
-    }
+    StreamNetwork network = laid_out(number_links(graph, channel, nodes, donors), nodes);
+    network.strahler = at_upper_ends(network, orders_along(graph, channel, nodes));
+    network.shreve = at_upper_ends(network, magnitudes_along(graph, channel, nodes));
     measure_links(graph, donors, drainage_area_m2, elevation_m, network);
     return network;
 }

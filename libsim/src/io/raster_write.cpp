@@ -61,24 +61,32 @@ CPLStringList cloud_options(GDALDriver& driver, CellType type) {
 
 double nodata_tag(const Layer& layer) { return layer.nodata.value_or(std::numeric_limits<double>::quiet_NaN()); }
 
-/// What is written: the values themselves or, where no data has a tag of its own, a copy with that in their place.
-class Cells {
+/// Hands the rows on from strip to strip, as they are written: with the tag in the place of no data.
+class Strips {
   public:
-    Cells(std::span<const double> values, const Layer& layer) : values_(values) {
-        const double tag = nodata_tag(layer);
-        if (std::isnan(tag)) return;
-        copy_.assign(values.begin(), values.end());
-        for (double& value : copy_) value = std::isnan(value) ? tag : value;
-        values_ = copy_;
-    }
-    Cells(const Cells&) = delete;
-    Cells& operator=(const Cells&) = delete;
+    Strips(const Grid& grid, const RowSource& source, const Layer& layer)
+        : grid_(grid), source_(source), tag_(nodata_tag(layer)) {}
 
-    std::span<const double> values() const { return values_; }
+    /// Calls use(first_row, rows, cells) until it returns false.
+    template <class Use>
+    void for_each(Use use) const {
+        std::vector<double> cells(std::size_t{std::min(rows_at_a_time, grid_.rows)} * grid_.cols);
+        for (Index row = 0; row < grid_.rows; row += rows_at_a_time) {
+            const Index rows = std::min(rows_at_a_time, grid_.rows - row);
+            const std::span<double> strip(cells.data(), std::size_t{rows} * grid_.cols);
+            source_(row, strip);
+            if (!std::isnan(tag_))
+                std::ranges::replace_if(
+                    strip, [](double z) { return std::isnan(z); }, tag_);
+            if (!use(row, rows, strip)) return;
+        }
+    }
 
   private:
-    std::vector<double> copy_;
-    std::span<const double> values_;
+    static constexpr Index rows_at_a_time = cloud_tile;  // whole tiles of either size
+    const Grid& grid_;
+    const RowSource& source_;
+    double tag_;
 };
 
 /// Throws Error unless these are whole numbers of the type's range; GDAL would clamp and round in silence.
@@ -122,24 +130,35 @@ void describe(GDALRasterBand& band, const Layer& layer) {
     band.SetColorTable(&table);
 }
 
-/// Least, largest, mean and standard deviation of the cells with data, which GDAL would else have to look for.
-void tell_statistics(GDALRasterBand& band, std::span<const double> cells, const Layer& layer) {
+/// Of the cells with data.
+struct CellStatistics {
+    double origin = 0;  // without it the squares of high land lose their digits
     double least = std::numeric_limits<double>::infinity(), most = -least, sum = 0, squares = 0;
     std::size_t count = 0;
-    const auto first = std::ranges::find_if_not(cells, [](double value) { return std::isnan(value); });
-    const double origin = first == cells.end() ? 0 : *first;  // without it the squares of high land lose their digits
-    for (const double value : cells) {
-        if (std::isnan(value) || (layer.nodata && value == *layer.nodata)) continue;
+
+    void add(double value) {
+        if (count == 0) origin = value;
         least = std::min(least, value);
         most = std::max(most, value);
         sum += value - origin;
         squares += (value - origin) * (value - origin);
         ++count;
     }
-    if (count == 0) return;
-    const double mean = sum / static_cast<double>(count);
-    const double variance = squares / static_cast<double>(count) - mean * mean;
-    band.SetStatistics(least, most, origin + mean, std::sqrt(std::max(variance, 0.0)));
+};
+
+/// Least, largest, mean and standard deviation, which GDAL would else have to look for.
+void tell_statistics(GDALRasterBand& band, const Strips& strips, const Layer& layer) {
+    CellStatistics s;
+    strips.for_each([&](Index, Index, std::span<const double> cells) {
+        for (const double value : cells) {
+            if (!std::isnan(value) && !(layer.nodata && value == *layer.nodata)) s.add(value);
+        }
+        return true;
+    });
+    if (s.count == 0) return;
+    const double mean = s.sum / static_cast<double>(s.count);
+    const double variance = s.squares / static_cast<double>(s.count) - mean * mean;
+    band.SetStatistics(s.least, s.most, s.origin + mean, std::sqrt(std::max(variance, 0.0)));
 }
 
 /// GDAL's close cannot fail, so a full disk can leave a file that looks complete: every tile must lie inside it.
@@ -160,27 +179,33 @@ bool tiles_lie_inside(const std::filesystem::path& path, const Grid& grid, Layou
     return true;
 }
 
-CPLErr fill(GDALDataset& dataset, const Grid& grid, const Placement& placement, std::span<const double> cells,
+CPLErr fill(GDALDataset& dataset, const std::filesystem::path& path, const Placement& placement, const Strips& strips,
             const Layer& layer) {
     place(dataset, placement);
     GDALRasterBand& band = *dataset.GetRasterBand(1);
     describe(band, layer);
-    if (layer.colors.empty()) tell_statistics(band, cells, layer);
-    const int cols = static_cast<int>(grid.cols), rows = static_cast<int>(grid.rows);
-    void* const read_only = const_cast<double*>(cells.data());  // one function reads and writes
-    return band.RasterIO(GF_Write, 0, 0, cols, rows, read_only, cols, rows, GDT_Float64, 0, 0, nullptr);
+    if (layer.colors.empty()) tell_statistics(band, strips, layer);
+    CPLErr status = CE_None;
+    strips.for_each([&](Index first_row, Index rows, std::span<double> cells) {
+        check_values(cells, layer, path);
+        const int cols = band.GetXSize(), height = static_cast<int>(rows);
+        status = band.RasterIO(GF_Write, 0, static_cast<int>(first_row), cols, height, cells.data(), cols, height,
+                               GDT_Float64, 0, 0, nullptr);
+        return status == CE_None;
+    });
+    return status;
 }
 
 /// The driver for cloud-optimized files copies only, so those are made in memory first.
 CPLErr write_cells(const std::filesystem::path& path, const Grid& grid, const Placement& placement,
-                   std::span<const double> cells, const Layer& layer, GdalGuard& gdal) {
+                   const Strips& strips, const Layer& layer, GdalGuard& gdal) {
     const bool tiled = layer.layout == Layout::tiled;
     GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(tiled ? "GTiff" : "MEM");
     const CPLStringList options = tiled ? creation_options(*driver, layer.type) : CPLStringList();
     DatasetPtr dataset(driver->Create(tiled ? path.c_str() : "", static_cast<int>(grid.cols),
                                       static_cast<int>(grid.rows), 1, gdal_type(layer.type), options.List()));
     if (!dataset) throw Error(fmt::format("{} cannot be created{}", path.string(), because(gdal)));
-    const CPLErr status = fill(*dataset, grid, placement, cells, layer);
+    const CPLErr status = fill(*dataset, path, placement, strips, layer);
     if (tiled) {
         dataset->FlushCache(false);
         return status;
@@ -192,29 +217,35 @@ CPLErr write_cells(const std::filesystem::path& path, const Grid& grid, const Pl
     return copy ? status : CE_Failure;
 }
 
-void write_file(const std::filesystem::path& path, const Grid& grid, const Placement& placement,
-                std::span<const double> cells, const Layer& layer, GdalGuard& gdal) {
-    const CPLErr status = write_cells(path, grid, placement, cells, layer, gdal);
+void write_file(const std::filesystem::path& path, const Grid& grid, const Placement& placement, const Strips& strips,
+                const Layer& layer, GdalGuard& gdal) {
+    const CPLErr status = write_cells(path, grid, placement, strips, layer, gdal);
     if (status != CE_None || gdal.failed() || !tiles_lie_inside(path, grid, layer.layout)) unwritten(path, gdal);
 }
 
 }  // namespace
 
 void write_raster(const std::filesystem::path& path, const Grid& grid, const Placement& placement,
-                  std::span<const double> values, const Layer& layer) {
-    if (values.size() != grid.size()) {
-        throw Error(fmt::format("{} would need {} values, not {}", path.string(), grid.size(), values.size()));
-    }
-    const Cells cells(values, layer);
-    check_values(cells.values(), layer, path);
+                  const RowSource& source, const Layer& layer) {
     GdalGuard gdal;
     try {
-        write_file(path, grid, placement, cells.values(), layer, gdal);
+        write_file(path, grid, placement, Strips(grid, source, layer), layer, gdal);
     } catch (const Error&) {
         std::error_code ignored;
         if (std::filesystem::is_regular_file(path, ignored)) std::filesystem::remove(path, ignored);
         throw;
     }
+}
+
+void write_raster(const std::filesystem::path& path, const Grid& grid, const Placement& placement,
+                  std::span<const double> values, const Layer& layer) {
+    if (values.size() != grid.size()) {
+        throw Error(fmt::format("{} would need {} values, not {}", path.string(), grid.size(), values.size()));
+    }
+    const RowSource rows = [&](Index first_row, std::span<double> cells) {
+        std::ranges::copy(values.subspan(std::size_t{first_row} * grid.cols, cells.size()), cells.begin());
+    };
+    write_raster(path, grid, placement, rows, layer);
 }
 
 }  // namespace thalweg::io

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+#include <future>
+
 #include "study/derivative_rasters.hpp"
 #include "study/ingest.hpp"
 #include "study/layer_styles.hpp"
@@ -65,49 +68,55 @@ Json outlet_json(const OutletReport& o) {
             {"snap_m", o.snap_m}, {"moved_m", o.moved_m}, {"area_m2", o.area_m2},     {"complete", o.complete}};
 }
 
+/// Writes one number per cell, `value(cell)`.
+template <class Value>
+void write_cells(const Raster& dem, const std::filesystem::path& file, const io::Layer& layer, Value value) {
+    const io::RowSource rows = [&](Index first_row, std::span<double> cells) {
+        const std::size_t first = std::size_t{first_row} * dem.grid.cols;
+        for (std::size_t i = 0; i < cells.size(); ++i) cells[i] = value(first + i);
+    };
+    io::write_raster(file, dem.grid, dem.placement, rows, layer);
+}
+
 /// ESRI's codes: 1 << slot, 0 where water leaves, 255 without data.
-std::vector<double> esri_codes(const FlowDirections& directions, std::span<const double> elevation_m) {
-    std::vector<double> codes(directions.size());
-    for (std::size_t i = 0; i < codes.size(); ++i) {
-        if (std::isnan(elevation_m[i]))
-            codes[i] = 255;
-        else
-            codes[i] = directions[i] == no_flow ? 0 : 1 << directions[i];
-    }
-    return codes;
+int esri_code(Slot slot) { return slot == no_flow ? 0 : 1 << slot; }
+
+/// What is known once water is routed, of arrays that stay where they are.
+struct RoutedLayers {
+    std::span<const double> elevation_m, drainage_area_m2;
+    terrain::Receivers receiver;
+};
+
+RoutedLayers routed_layers(const RoutedTerrain& terrain) {
+    const bool divided = !terrain.divided_area_m2.empty();
+    return {terrain.elevation_m, divided ? terrain.divided_area_m2 : terrain.drainage_area_m2, terrain.graph.receiver};
 }
 
-/// The areas, which nobody needs afterwards, with holes where there are no data.
-std::vector<double> take_area(const Raster& dem, RasterMeasurement& m) {
-    const bool divided = !m.terrain.divided_area_m2.empty();
-    std::vector<double> area = std::move(divided ? m.terrain.divided_area_m2 : m.terrain.drainage_area_m2);
-    for (std::size_t i = 0; i < area.size(); ++i) {
-        if (std::isnan(dem.values[i])) area[i] = dem.values[i];
-    }
-    return area;
+void write_routed(const Raster& dem, const RoutedLayers& m, const std::filesystem::path& folder) {
+    const auto& z = dem.values;
+    io::write_raster(folder / "filled.tif", dem.grid, dem.placement, m.elevation_m,
+                     {.nodata = {}, .description = "conditioned elevation (m)"});
+    write_cells(dem, folder / "drainage_area.tif", {.nodata = {}, .description = "drainage area (m2)"},
+                [&](std::size_t cell) { return std::isnan(z[cell]) ? z[cell] : m.drainage_area_m2[cell]; });
+    const FlowDirections& directions = m.receiver.directions();
+    write_cells(dem, folder / "flow_direction.tif",
+                {.type = io::CellType::uint8,
+                 .nodata = 255,
+                 .description = "D8 direction (ESRI codes, 0 outlet)",
+                 .colors = direction_colors()},
+                [&](std::size_t cell) { return std::isnan(z[cell]) ? 255 : esri_code(directions[cell]); });
 }
 
-void write_rasters(const Raster& dem, RasterMeasurement& m, const std::filesystem::path& folder) {
-    const auto write = [&](const char* name, std::span<const double> values, io::Layer layer) {
-        io::write_raster(folder / name, dem.grid, dem.placement, values, layer);
-    };
-    write("filled.tif", m.terrain.elevation_m, {.nodata = {}, .description = "conditioned elevation (m)"});
-    write("drainage_area.tif", take_area(dem, m), {.nodata = {}, .description = "drainage area (m2)"});
-    write("flow_direction.tif", esri_codes(m.terrain.graph.receiver.directions(), dem.values),
-          {.type = io::CellType::uint8,
-           .nodata = 255,
-           .description = "D8 direction (ESRI codes, 0 outlet)",
-           .colors = direction_colors()});
-    const auto as_numbers = [](const std::vector<Index>& values) {
-        return std::vector<double>(values.begin(), values.end());
-    };
-    write("strahler.tif", as_numbers(m.statistics.strahler_of),
-          {.type = io::CellType::uint8,
-           .nodata = {},
-           .description = "Strahler order (0: no channel)",
-           .colors = order_colors()});
-    write("shreve.tif", as_numbers(m.statistics.shreve_of),
-          {.type = io::CellType::int32, .nodata = {}, .description = "Shreve magnitude (0: no channel)"});
+void write_orders(const Raster& dem, const Statistics& s, const std::filesystem::path& folder) {
+    write_cells(dem, folder / "strahler.tif",
+                {.type = io::CellType::uint8,
+                 .nodata = {},
+                 .description = "Strahler order (0: no channel)",
+                 .colors = order_colors()},
+                [&](std::size_t cell) { return s.strahler_of[cell]; });
+    write_cells(dem, folder / "shreve.tif",
+                {.type = io::CellType::int32, .nodata = {}, .description = "Shreve magnitude (0: no channel)"},
+                [&](std::size_t cell) { return s.shreve_of[cell]; });
 }
 
 void write_tables(const Raster& dem, const Statistics& s, const std::filesystem::path& folder) {
@@ -140,7 +149,12 @@ NamedRaster read_dem(const std::filesystem::path& path, const io::ReadOptions& o
 std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const std::filesystem::path& folder,
                     const Messages& messages) {
     messages.progress("routing flow and measuring");
-    RasterMeasurement m = measure_raster(dem.raster, options);
+    std::future<void> written;  // while the rest is measured
+    RasterMeasurement m = measure_raster(dem.raster, options, [&](const RoutedTerrain& terrain) {
+        written = std::async(std::launch::async, [&dem, &folder, layers = routed_layers(terrain)] {
+            write_routed(dem.raster, layers, folder);
+        });
+    });
     // A catchment that was cut out looks whole, whatever the data around it.
     const bool cut = dem.outlet && !dem.outlet->complete;
     for (BasinStatistics& basin : m.statistics.basins) basin.basin.complete &= !cut;
@@ -174,7 +188,8 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
                      "no cell has all eight neighbours, or the surface is level where they are", notes);
     }
     summary["notes"] = notes;
-    write_rasters(dem.raster, m, folder);
+    written.get();
+    write_orders(dem.raster, m.statistics, folder);
     write_tables(dem.raster, m.statistics, folder);
     std::string text = text_of(summary);
     write_text(folder / "summary.json", text);

@@ -311,7 +311,8 @@ ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions& opt
     return c;
 }
 
-RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& options) {
+RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& options,
+                                 const std::function<void(const RoutedTerrain&)>& when_routed) {
     RasterMeasurement m;
     const auto boundary = boundary_of(raster, options, m.conditioning.endorheic_basins);
     m.terrain.cell_area_m2 = CellAreas(raster.grid);
@@ -330,6 +331,7 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
     m.terrain.offset_m = channel::offsets(raster.grid);
     m.terrain.elevation_m = std::move(surface);
 
+    if (when_routed) when_routed(m.terrain);
     m.valid_cells = static_cast<Index>(m.terrain.graph.order.size());
     m.area_m2 = total_area(m.terrain);
     MeasureOptions resolved = with_channels_chosen(m.terrain, options, m.channel_evidence);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -71,5 +72,11 @@ struct Layer {
 /// (permissions, full disk).
 void write_raster(const std::filesystem::path&, const Grid&, const Placement&, std::span<const double> values,
                   const Layer&);
+
+/// Puts the values of whole rows, from `first_row` on, into `cells`.
+using RowSource = std::function<void(Index first_row, std::span<double> cells)>;
+
+/// The same of values that are made as they are needed, which may be twice.
+void write_raster(const std::filesystem::path&, const Grid&, const Placement&, const RowSource&, const Layer&);
 
 }  // namespace thalweg::io

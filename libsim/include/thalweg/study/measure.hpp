@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -240,8 +241,10 @@ struct RasterMeasurement {
     Statistics statistics;
 };
 
-/// Conditions, routes and measures a DEM. Throws Error when there is nothing to measure.
-RasterMeasurement measure_raster(const Raster&, const MeasureOptions&);
+/// Conditions, routes and measures a DEM. Throws Error when there is nothing to measure. `when_routed` is called before
+/// the statistics; the terrain's arrays change no more and stay where they are, even when the result is moved.
+RasterMeasurement measure_raster(const Raster&, const MeasureOptions&,
+                                 const std::function<void(const RoutedTerrain&)>& when_routed = {});
 
 /// Area of the cells with data, m².
 double data_area(const Raster&);
