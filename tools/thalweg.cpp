@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The command line: a table of subcommands, and what becomes of errors.
-#include <malloc.h>
-
 #include <algorithm>
 #include <exception>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <new>
 #include <string>
 
 #include "command.hpp"
 #include "interrupt.hpp"
+#include "keep_freed_memory.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/study/manifest.hpp"
 
@@ -78,19 +76,10 @@ int parse_and_run(int argc, char** argv) {
     return 0;
 }
 
-/// The arrays of a DEM come and go by the dozen. By default each is handed back to the system and asked for anew, page
-/// by page, which took a fifth of the time of `analyze`; kept, the memory is used again.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-    mallopt(M_MMAP_MAX, 0);
-    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-#endif
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
-    keep_freed_memory();
+    thalweg::tools::keep_freed_memory();
     thalweg::tools::hold_back_signals();
     try {
         return parse_and_run(argc, argv);

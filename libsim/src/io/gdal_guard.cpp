@@ -14,7 +14,7 @@ std::once_flag registered;
 void register_drivers() {
     GDALAllRegister();
     // Rasters are streamed once; a large cache (GDAL's default is 5 % of the memory) would only hold dead blocks.
-    GDALSetCacheMax64(GIntBig{64} << 20);
+    GDALSetCacheMax64(GIntBig{16} << 20);
 }
 
 std::string one_line(std::string text) {

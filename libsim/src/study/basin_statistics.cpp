@@ -49,8 +49,6 @@ void add_channels(const Statistics& s, std::vector<BasinStatistics>& basins) {
     }
     for (BasinStatistics& b : basins) {
         b.drainage_density_per_m = b.channel_length_m / b.basin.area_m2;
-        b.max_strahler = s.strahler_of[b.basin.outlet];
-        b.max_shreve = s.shreve_of[b.basin.outlet];
     }
 }
 

@@ -73,8 +73,6 @@ ChannelStatistics channel_statistics(const Statistics& s, double threshold_m2, d
         c.total_length_m += network.length_m[link];
     }
     c.outlets = count_outlets(network);
-    c.max_strahler = highest(s.strahler_of);
-    c.max_shreve = highest(s.shreve_of);
     c.drainage_density_per_m =
         basin_area_m2 > 0 ? c.total_length_m / basin_area_m2 : std::numeric_limits<double>::quiet_NaN();
     return c;
@@ -212,6 +210,18 @@ std::vector<double> divided_area(const Grid& grid, std::span<const double> surfa
     return terrain::accumulate(flow, terrain::cell_areas(grid));
 }
 
+/// Orders of every node: last, since the other statistics take as much memory again while they work.
+void add_orders(const terrain::FlowGraph& graph, std::span<const std::uint8_t> channels, Statistics& s) {
+    s.strahler_of = channel::strahler_orders(graph, channels);
+    s.shreve_of = channel::shreve_magnitudes(graph, channels);
+    s.channels.max_strahler = highest(s.strahler_of);
+    s.channels.max_shreve = highest(s.shreve_of);
+    for (BasinStatistics& basin : s.basins) {
+        basin.max_strahler = s.strahler_of[basin.basin.outlet];
+        basin.max_shreve = s.shreve_of[basin.basin.outlet];
+    }
+}
+
 }  // namespace
 
 double data_area(const Raster& raster) {
@@ -249,8 +259,6 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
     s.hypsometry = terrain::hypsometry(ground_m, terrain.cell_area_m2);
     const auto all_channels = channel_nodes(terrain, options, threshold);
     const auto channels = channels_in_use(terrain, options, threshold);
-    s.strahler_of = channel::strahler_orders(terrain.graph, channels);
-    s.shreve_of = channel::shreve_magnitudes(terrain.graph, channels);
     s.network = channel::stream_network(terrain.graph, channels, terrain.drainage_area_m2, terrain.elevation_m);
 
     const auto basins = basins_in_use(terrain, options, threshold, all_channels);
@@ -276,6 +284,7 @@ Statistics measure(const RoutedTerrain& terrain, std::span<const double> ground_
     s.slope_area_points = std::move(slopes);
     s.chi = std::move(chi);
     s.basins = basin_statistics(terrain, ground_m, basins, s);
+    add_orders(terrain.graph, channels, s);
     return s;
 }
 
