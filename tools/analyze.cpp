@@ -7,6 +7,7 @@
 #include "command.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/study/channel_heads.hpp"
+#include "thalweg/study/outlet.hpp"
 
 namespace thalweg::tools {
 namespace {
@@ -27,7 +28,7 @@ struct Options {
     CommonOptions common;
     DemOptions dem;
     OutletOptions outlet;
-    std::string file, theta, knickpoint_prominence, heads, channels, slope_area;
+    std::string file, theta, knickpoint_prominence, heads, heads_snap, channels, slope_area;
     std::string breach_depth, breach_length, endorheic_depth, endorheic_area, endorheic_points;
     bool derivatives = false;
     std::string relief_radius;
@@ -45,6 +46,8 @@ void choose_channels(const Options& options, study::MeasureOptions& measure) {
         throw Error(fmt::format("--channel-area-m2 is for channels by area, and --{} asks for others: give one of them",
                                 rule == "heads" ? rule : "channels " + rule));
     }
+    if (rule != "heads" && !options.heads_snap.empty())
+        throw Error("--heads-snap-m moves --heads, which are not given");
     if (rule != "slope-area" && !options.slope_area.empty()) {
         throw Error("--slope-area-m2 is for --channels slope-area only");
     }
@@ -91,6 +94,10 @@ void run(const Options& options) {
     }
     const io::ReadOptions read = read_options(options.dem);
     const auto outlet = outlet_request(options.outlet);
+    std::optional<double> heads_snap_m;
+    if (!options.heads_snap.empty()) {
+        heads_snap_m = parse_number("--heads-snap-m", options.heads_snap, Sign::positive);
+    }
     run_into_folder(options.common, "analyze", [&](const auto& folder, const study::Messages& m) {
         study::NamedRaster dem = study::read_dem(options.file, read, m);
         if (!options.endorheic_points.empty()) {
@@ -98,6 +105,7 @@ void run(const Options& options) {
         }
         if (outlet) dem = study::cut_to_outlet(dem, *outlet, measure, m);
         if (!options.heads.empty()) measure.heads = study::read_channel_heads(options.heads, dem.raster, m);
+        if (heads_snap_m) measure.heads = study::snapped_heads(dem.raster, *measure.heads, *heads_snap_m, measure);
         return study::analyze(dem, measure, folder, m);
     });
 }
@@ -139,6 +147,9 @@ void add_analyze(CLI::App& app) {
                         "area times slope squared where channels begin [default: by constant stream drops]");
     command->add_option("--heads", options->heads,
                         "points where channels begin, in any vector format GDAL reads, instead of a drainage area");
+    command->add_option("--heads-snap-m", options->heads_snap,
+                        "how far heads may be moved to a river: to the nearest cell with at least half the drainage "
+                        "area of any within [default: not at all]");
     command->add_option("--theta", options->theta, "concavity for chi and ksn [default: 0.45]");
     command->add_option("--knickpoint-prominence-m", options->knickpoint_prominence,
                         "height above the steepest concave profile from which a place is a knickpoint [default: 5 % of "

@@ -10,6 +10,7 @@
 #include "thalweg/core/error.hpp"
 #include "thalweg/io/geodesy.hpp"
 #include "thalweg/io/table_file.hpp"
+#include "thalweg/study/outlet.hpp"
 
 using namespace thalweg;
 using namespace thalweg::study;
@@ -127,4 +128,29 @@ TEST_CASE("Heads are read from the layer of sources where there is one, other po
     CHECK(read_channel_heads(temp / "both.gpkg", raster, {}).cells == std::vector<Index>{1 * 8 + 4});
     CHECK(read_cells(temp / "both.gpkg", {}, raster, {}).cells == std::vector<Index>{1 * 8 + 4, 2 * 8 + 4});
     CHECK(read_cells(temp / "both.gpkg", {"lakes"}, raster, {}).cells == std::vector<Index>{2 * 8 + 4});
+}
+
+TEST_CASE("Heads beside the valley are moved into it, not down it, and merged where they meet", "[heads]") {
+    // The valley's middle is column 4, where 5 cells more drain from row to row. Within 15 m of (2, 3) and (2, 5) lie
+    // (1, 4), (2, 4) and (3, 4); half of the last one's 15 cells is less than the 10 of (2, 4), which is nearest.
+    const Raster raster = drawn_catchment();
+    const ChannelHeads given{.cells = {2 * 8 + 3, 2 * 8 + 5, 4 * 8 + 4}, .given = 3};
+    const ChannelHeads snapped = snapped_heads(raster, given, 15, {});
+    CHECK(snapped.cells == std::vector<Index>{2 * 8 + 4, 4 * 8 + 4});
+    CHECK(snapped.merged == 1);
+    CHECK(snapped.moved == 2);
+    CHECK(snapped.mean_moved_m == Approx(20.0 / 3));
+    CHECK(snapped.largest_moved_m == Approx(10));
+    CHECK(snapped_heads(raster, given, 5, {}).cells == given.cells);
+    CHECK_THROWS_AS(snapped_heads(raster, given, 0, {}), Error);
+
+    const TempFolder temp;
+    MeasureOptions options;
+    options.channels = ChannelRule::heads;
+    options.heads = snapped;
+    const Json heads = analyzed(raster, options, temp / "out")["channels"]["heads"];
+    CHECK(heads["snap_m"] == 15);
+    CHECK(heads["moved"] == 2);
+    CHECK(heads["merged"] == 1);
+    CHECK(heads["largest_moved_m"].get<double>() == Approx(10));
 }

@@ -140,6 +140,8 @@ class CommandLine(unittest.TestCase):
         self.refused("analyze", DEM, "--channels", "drop", "--channel-area-m2", "1e5", *out, saying="--channels drop")
         self.refused("analyze", DEM, "--slope-area-m2", "1e5", *out, saying="--slope-area-m2")
         self.refused("analyze", DEM, "--channels", "guess", *out, saying="guess")
+        self.refused("analyze", DEM, "--heads-snap-m", "50", *out, saying="--heads-snap-m")
+        self.refused("analyze", DEM, "--heads", heads, "--heads-snap-m", "-5", *out, saying="--heads-snap-m")
         self.refused("analyze", DEM, "--relief-radius-m", "500", *out, saying="--derivatives")
         self.refused("analyze", DEM, "--derivatives", "--relief-radius-m", "5", *out, saying="--relief-radius-m 5")
         self.refused("analyze", DEM, "--derivatives", "--relief-radius-m", "0", *out, saying="--relief-radius-m")

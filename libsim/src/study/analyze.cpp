@@ -22,7 +22,13 @@ namespace thalweg::study {
 namespace {
 
 Json heads_json(const ChannelHeads& heads) {
-    return {{"given", heads.given}, {"outside", heads.outside}, {"merged", heads.merged}};
+    Json json{{"given", heads.given}, {"outside", heads.outside}, {"merged", heads.merged}};
+    if (!heads.snap_m) return json;
+    json["snap_m"] = *heads.snap_m;
+    json["moved"] = heads.moved;
+    json["mean_moved_m"] = heads.mean_moved_m;
+    json["largest_moved_m"] = heads.largest_moved_m;
+    return json;
 }
 
 /// What the choice of channels rests on.

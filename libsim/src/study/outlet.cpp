@@ -108,6 +108,33 @@ Index snapped_outlet(const Raster& raster, Point point, double radius_m, std::sp
     return std::get<2>(best);
 }
 
+ChannelHeads snapped_heads(const Raster& raster, const ChannelHeads& heads, double radius_m,
+                           const MeasureOptions& options) {
+    if (!(radius_m > 0))
+        throw Error(fmt::format("heads cannot be moved by up to {} m: give a positive radius", radius_m));
+    const Grid& grid = raster.grid;
+    const Routed r = routed(raster, options);
+    ChannelHeads snapped = heads;
+    snapped.snap_m = radius_m;
+    std::vector<double> distances;
+    for (Index& cell : snapped.cells) {
+        const Index from = cell;
+        const Point middle = raster.placement.center(grid.row(from), grid.col(from));
+        cell = snapped_outlet(raster, middle, radius_m, r.area_m2);
+        snapped.moved += cell != from;
+        distances.push_back(distance_m(grid, from, place_of(raster, from, middle), cell));
+    }
+    if (!distances.empty()) {
+        snapped.mean_moved_m = mean(distances);
+        snapped.largest_moved_m = std::ranges::max(distances);
+    }
+    std::ranges::sort(snapped.cells);
+    const auto repeated = std::ranges::unique(snapped.cells);
+    snapped.merged += static_cast<Index>(repeated.size());
+    snapped.cells.erase(repeated.begin(), repeated.end());
+    return snapped;
+}
+
 OutletCatchment catchment_above(const Raster& raster, const OutletRequest& request, const MeasureOptions& options) {
     const Index cell = cell_of(raster, request.at);
     const Grid& grid = raster.grid;

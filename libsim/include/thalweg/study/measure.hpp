@@ -53,10 +53,13 @@ enum class ChannelRule {
 
 /// Cells where channels begin, as somebody mapped them.
 struct ChannelHeads {
-    std::vector<Index> cells;  ///< ascending, each once, all with data
-    Index given = 0;           ///< points, of which some may lie
-    Index outside = 0;         ///< off the data: they say nothing about this terrain and are left out
-    Index merged = 0;          ///< in a cell that another has
+    std::vector<Index> cells;        ///< ascending, each once, all with data
+    Index given = 0;                 ///< points, of which some may lie
+    Index outside = 0;               ///< off the data: they say nothing about this terrain and are left out
+    Index merged = 0;                ///< in a cell that another has
+    std::optional<double> snap_m{};  ///< how far they might be moved to rivers; none: not at all
+    Index moved = 0;                 ///< to another cell
+    double mean_moved_m = 0, largest_moved_m = 0;  ///< over all on the data
 };
 
 /// Closed depressions that keep their water, each draining to its lowest cell: those that are as deep and as large as

@@ -29,6 +29,11 @@ struct OutletReport {
 /// it finds the river, and does not slide down along it. Distances are the grid's, from the point itself.
 Index snapped_outlet(const Raster&, Point, double radius_m, std::span<const double> drainage_area_m2);
 
+/// Channel heads moved to rivers by the same rule, as the conditioning of the options lets water run. Distances are
+/// from the middles of their cells. Heads that come to lie in one cell are merged. Throws Error unless the radius is
+/// positive.
+ChannelHeads snapped_heads(const Raster&, const ChannelHeads&, double radius_m, const MeasureOptions&);
+
 /// A DEM cut down to what drains to an outlet, NaN elsewhere.
 struct OutletCatchment {
     Raster raster;
