@@ -134,7 +134,7 @@ class OtherPrograms(unittest.TestCase):
             handles = CASES[name][3]
             self.assertEqual(len(vertices) - 3 * len(faces) / 2 + len(faces), 2 - 2 * handles)
             off = abs(volume(vertices, faces) / told["volume_m3"] - 1)
-            self.assertLess(off, 1e-8)
+            self.assertLess(off, 1e-7 if told["file"].endswith("obj") else 1e-8)  # OBJ: seven digits
             self.volumes_off[f"{name}, {told['file']}"] = off
 
     @of_each_case
