@@ -175,6 +175,14 @@ double parse_number(const std::string& option, const std::string& text, Sign sig
     return value;
 }
 
+std::uint64_t parse_seed(const std::string& option, const std::string& text) {
+    constexpr double largest = 9007199254740992;
+    const double value = parse_number(option, text, Sign::not_negative);
+    if (value != std::floor(value)) throw Error(fmt::format("{} must be a whole number, not {}", option, text));
+    if (value > largest) throw Error(fmt::format("{} must be at most 2^53, not {}", option, text));
+    return static_cast<std::uint64_t>(value);
+}
+
 void run_into_folder(const CommonOptions& options, const std::string& figures,
                      const std::function<std::string(const std::filesystem::path&, const study::Messages&)>& work,
                      const std::function<std::string()>& left_behind) {

@@ -59,6 +59,9 @@ study::Experiment experiment(const ExperimentOptions&);
 enum class Sign { any, positive, not_negative };
 double parse_number(const std::string& option, const std::string& text, Sign);
 
+/// A whole number from 0 to 2^53, as `seed` in an experiment file.
+std::uint64_t parse_seed(const std::string& option, const std::string& text);
+
 /// Runs `work` with progress and warnings on standard error and a folder to write into, which appears only if it
 /// succeeds, and prints what it returns with --json. `left_behind`: see InterruptGuard. `figures` names the drawings to
 /// be made ("" for none).

@@ -88,6 +88,24 @@ TEST_CASE("Networks grown with fitted dials measure like the one that was measur
     }
 }
 
+TEST_CASE("Dials are fitted by the rules that networks are to grow by") {
+    const grow::Basin basin = support::square_basin(6000);
+    grow::Dials truth = drawn_dials(3);
+    truth.upstream_link = grow::UpstreamLink::turns;
+    const auto measures = grown_measures(basin, truth);
+    const DialsFit fit = fit_dials(basin, measures, 1, {.upstream_link = truth.upstream_link});
+    CHECK(fit.dials.upstream_link == grow::UpstreamLink::turns);
+    CHECK(fit.rounds == 4);
+    const auto apart = [](const DialsFit& f) {
+        double sum = 0;
+        for (const MeasureCheck& c : f.check) {
+            if (c.grown_sd > 0) sum += std::pow((c.measured - c.grown_mean) / c.grown_sd, 2);
+        }
+        return sum;
+    };
+    CHECK(apart(fit) < apart(fit_dials(basin, measures, 1)));
+}
+
 TEST_CASE("Fitted dials are the same for any number of threads, and others for another seed") {
     const grow::Basin basin = support::square_basin(6000);
     const auto measures = grown_measures(basin, drawn_dials(2));
@@ -105,6 +123,7 @@ TEST_CASE("What was not measured is left open, and what cannot be grown is said"
     measures.side_choices.obtuse[0] = {0, std::nan(""), std::nan("")};
     const DialsFit fit = fit_dials(basin, measures, 1);
     CHECK_FALSE(fit.table[9].identified);
+    CHECK(fit.message.ends_with("standard errors"));
     CHECK(fit.table[9].name == "lower_bias");
     CHECK(fit.dials.lower_bias == Approx(0.5).margin(0.15));
     auto steep = measures;

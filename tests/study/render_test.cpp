@@ -188,6 +188,9 @@ TEST_CASE("Pictures that cannot be drawn are refused with a sentence") {
     refused([](RenderOptions& o) { o.view.width = 0; });
     refused([](RenderOptions& o) { o.view.elevation = 2; });
     refused([&](RenderOptions& o) { o.network = folder / "none.gpkg"; });
+    refused([](RenderOptions& o) { o.channel_area_m2 = 1e6; });
+    refused([](RenderOptions& o) { o.tree_line_m = 300; });
+    refused([](RenderOptions& o) { o.snow_line_m = 300; });
     refused([&](RenderOptions& o) {
         o.network = folder / "none.gpkg";
         o.color = PictureColor::kelley;

@@ -344,12 +344,17 @@ TEST_CASE("A study by growth alone needs no uplift rate, and its grown terrain l
     e.study.dem = std::filesystem::path(THALWEG_SOURCE_DIR) / "validation/data/jacksboro.tif";
     CHECK_THROWS_AS(run_study(e, Figures::leave_out, folder / "", {}), Error);
     e.study.models = {StudyModel::growth};
+    e.growth.dials.upstream_link = grow::UpstreamLink::turns;
     const Json manifest = Json::parse(run_study(e, Figures::leave_out, folder / "", {}));
     CHECK(manifest["steps"] == Json{"measure", "basin", "growth_fit", "grow", "grown", "compare_grown"});
     const auto read = [&](const char* file) {
         std::ifstream stream(folder / file);
         return Json::parse(stream);
     };
+    // The dials were found by the rules that the network then grew by.
+    for (const char* file : {"growth_fit/growth.toml", "grow/experiment.toml"}) {
+        CHECK(read_experiment(folder / file).growth.dials.upstream_link == grow::UpstreamLink::turns);
+    }
     const Json basin = read("basin/summary.json"), grown = read("grown/summary.json");
     const auto number = [](const Json& summary, const char* path) {
         return summary[Json::json_pointer(path)].get<double>();

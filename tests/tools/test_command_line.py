@@ -318,7 +318,8 @@ class CommandLine(unittest.TestCase):
         self.assertIn("seed = 3", (self.here / "growth" / "growth.toml").read_text())
         self.refused("fit", DEM, "--method", "growth", "--n", "2", "--out", self.here / "no", saying="--n")
         self.refused("fit", DEM, "--seed", "2", "--out", self.here / "no", saying="--seed")
-        self.refused("fit", DEM, "--method", "growth", "--seed", "-2", "--out", self.here / "no", saying="--seed")
+        for seed in ("-2", "1.5", "1e30", "18446744073709551616"):
+            self.refused("fit", DEM, "--method", "growth", "--seed", seed, "--out", self.here / "no", saying="--seed")
 
     def test_a_fit_without_uplift_tells_what_slopes_alone_can_tell(self):
         result = thalweg("fit", DEM, "--out", self.here / "fit", "--json", "--no-figures")

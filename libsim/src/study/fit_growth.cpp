@@ -243,7 +243,8 @@ channel::GrowthMeasures growth_measures(const Raster& raster, const RasterMeasur
     return measures;
 }
 
-GrowthFit fit_growth(const Catchment& catchment, const MeasureOptions& options, std::uint64_t seed) {
+GrowthFit fit_growth(const Catchment& catchment, const MeasureOptions& options, std::uint64_t seed,
+                     const GrowthRules& rules) {
     MeasureOptions measuring = options;
     measuring.catchment_outlet = catchment.outlet;
     if (!measuring.channel_area_m2 && !measuring.heads)

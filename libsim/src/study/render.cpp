@@ -36,6 +36,22 @@ FileKind kind_of(const std::filesystem::path& out, const RenderOptions& options)
     return FileKind::svg;
 }
 
+/// What only the paper's colours show, and what excludes each other.
+void check_colors(const RenderOptions& o) {
+    const auto refuse = [](const char* option) {
+        throw Error(fmt::format("{} shows in the colours 'kelley' only: use --color kelley, or leave it out", option));
+    };
+    if (o.color != PictureColor::kelley) {
+        if (o.network) refuse("--network");
+        if (o.channel_area_m2) refuse("--channel-area-m2");
+        if (o.tree_line_m) refuse("--tree-line-m");
+        if (o.snow_line_m) refuse("--snow-line-m");
+    }
+    if (o.network && o.channel_area_m2) {
+        throw Error("--network says where the channels are, --channel-area-m2 where the DEM's own begin: give one");
+    }
+}
+
 void check(const RenderOptions& o) {
     if (!(o.vertical_exaggeration >= 1e-6 && o.vertical_exaggeration <= 1e6)) {
         throw Error(fmt::format("the vertical exaggeration must be from 1e-6 to 1e6, not {}", o.vertical_exaggeration));
@@ -45,9 +61,7 @@ void check(const RenderOptions& o) {
     }
     if (o.samples == 0 || o.samples > 4096) throw Error(fmt::format("{} samples per pixel: 1 to 4096", o.samples));
     if (o.lines < 2 || o.lines > 2000) throw Error(fmt::format("{} lines: from 2 to 2000 make a grid", o.lines));
-    if (o.network && o.color != PictureColor::kelley) {
-        throw Error("channels are painted in the colours 'kelley' only: use --color kelley, or leave out --network");
-    }
+    check_colors(o);
 }
 
 std::vector<render::Rgb> colors(const Raster& raster, const LocalMetres& local, const RenderOptions& o) {

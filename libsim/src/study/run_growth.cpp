@@ -34,10 +34,7 @@ Experiment grown_experiment(const Experiment& study, const GrowthFit& fit, const
     Experiment e = study;
     e.basin = found.basin;
     e.growth.channel_maintenance_m = found.growth.channel_maintenance_m;
-    const grow::Dials asked = study.growth.dials;
     e.growth.dials = found.growth.dials;
-    e.growth.dials.stop = asked.stop;
-    e.growth.dials.upstream_link = asked.upstream_link;
     if (!e.output.resolution) e.output.resolution = resolution_like(catchment.raster, fit.site.basin);
     return e;
 }
@@ -64,7 +61,9 @@ Index outlet_cell(const Raster& raster, const GrowthSite& site) {
 void run_growth_steps(const Experiment& e, const Catchment& catchment, const MeasureOptions& options,
                       const fs::path& study, const Messages& messages) {
     messages.progress("growing networks to find the dials");
-    const GrowthFit fit = fit_growth(catchment, options, e.seed);
+    const grow::Dials& asked = e.growth.dials;
+    const GrowthFit fit =
+        fit_growth(catchment, options, e.seed, {.upstream_link = asked.upstream_link, .stop = asked.stop});
     for (const std::string& warning : fit.site.warnings) messages.warning(warning);
     write_growth_fit(fit, "raster", step_folder(study, "growth_fit"));
     grow(grown_experiment(e, fit, catchment), catchment, step_folder(study, "grow"), messages);

@@ -31,7 +31,7 @@ channel::GrowthMeasures growth_measures(const Raster&, const RasterMeasurement&)
 /// Measures a catchment and finds its dials. C is freed of what D8 adds to the length of channels (5.5 % on straight
 /// ones): a grown network's links are straight. Throws Error where no trunk lies inside the basin or `fit_dials`
 /// cannot.
-GrowthFit fit_growth(const Catchment&, const MeasureOptions&, std::uint64_t seed);
+GrowthFit fit_growth(const Catchment&, const MeasureOptions&, std::uint64_t seed, const GrowthRules& = {});
 
 struct GrowthFitOptions {
     io::ReadOptions read;

@@ -27,6 +27,12 @@ struct MeasureCheck {
     double grown_mean, grown_sd;  ///< over the seeds
 };
 
+/// How networks are to grow beyond the dials.
+struct GrowthRules {
+    grow::UpstreamLink upstream_link = grow::Dials{}.upstream_link;
+    grow::Stop stop = grow::Dials{}.stop;
+};
+
 struct DialsFit {
     grow::Dials dials;
     std::vector<FittedDial> table;
