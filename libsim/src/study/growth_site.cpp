@@ -80,13 +80,16 @@ std::vector<Point> line_in(const fs::path& file, const std::string& crs_wkt) {
 }
 
 /// Outlet and source in map coordinates.
-std::vector<Point> drawn_trunk(const Shape& shape, const Drawn& outline) {
+std::vector<Point> drawn_trunk(const Shape& shape, Drawn& outline) {
     const auto* file = std::get_if<fs::path>(&shape);
     const std::vector<Point> line =
         file != nullptr ? line_in(*file, outline.map_crs_wkt) : std::get<std::vector<Point>>(shape);
     const bool wrong = file == nullptr ? line.size() != 2 : line.size() < 2;
     if (wrong) {
         throw Error(fmt::format("basin.trunk has {} places: it needs two, the outlet and the source", line.size()));
+    }
+    if (line.size() > 2) {
+        outline.warnings.push_back("basin.trunk: a trunk is straight, and the bends of the drawn line are left out");
     }
     return {line.front(), line.back()};
 }
