@@ -72,9 +72,7 @@ void run_growth(const Options& options) {
         }
         fit.heads = options.heads;
     }
-    if (!options.seed.empty()) {
-        fit.seed = static_cast<std::uint64_t>(parse_number("--seed", options.seed, Sign::not_negative));
-    }
+    if (!options.seed.empty()) fit.seed = parse_seed("--seed", options.seed);
     run_into_folder(options.common, "fit", [&](const auto& folder, const study::Messages& m) {
         return study::fit_growth(options.target, fit, folder, m);
     });

@@ -123,7 +123,6 @@ TEST_CASE("What was not measured is left open, and what cannot be grown is said"
     measures.side_choices.obtuse[0] = {0, std::nan(""), std::nan("")};
     const DialsFit fit = fit_dials(basin, measures, 1);
     CHECK_FALSE(fit.table[9].identified);
-    CHECK(fit.message.ends_with("standard errors"));
     CHECK(fit.table[9].name == "lower_bias");
     CHECK(fit.dials.lower_bias == Approx(0.5).margin(0.15));
     auto steep = measures;

@@ -234,9 +234,7 @@ Match match(const RandomModel& model, std::span<const double> target, const Matc
         last_step = largest_step(mean_before, belief);
         ++rounds;
         box = box_about(belief, options.ranges);
-        if (round > 0) last_step = largest_step(earlier, belief);
         outcomes = static_cast<Index>(drawn.parameters.rows());
-        ++rounds;
     }
     Match result = result_of(belief, before, options.ranges);
     result.outcomes = outcomes;

@@ -261,7 +261,7 @@ GrowthFit fit_growth(const Catchment& catchment, const MeasureOptions& options, 
     fit.notes.push_back(fmt::format(
         "channel_maintenance_m: channels are taken to begin at {}, and their length is freed of D8's {:.1f} %", begin,
         100 * (d8_length_factor - 1)));
-    fit.dials = fit_dials(fit.site.basin, fit.measures, seed);
+    fit.dials = fit_dials(fit.site.basin, fit.measures, seed, rules);
     check_grown(fit.dials);
     return fit;
 }

@@ -19,7 +19,6 @@ namespace thalweg::study {
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-constexpr Index match_rounds = 4;
 constexpr Index check_seeds = 20;
 constexpr double smallest_angle_deg = 1, largest_angle_deg = 89;  // that growth takes
 
@@ -207,21 +206,6 @@ std::vector<MeasureCheck> check_by_growing(const grow::Basin& basin, const grow:
     return check;
 }
 
-/// Whether the rounds came to rest, in a sentence.
-void tell_end(const infer::Match& found, DialsFit& fit) {
-    fit.rounds = found.rounds;
-    fit.converged = found.last_step <= 1;
-    if (found.rounds == 0) {
-        fit.message = "nothing was measured that tells of the dials: they are the middles of their ranges";
-        return;
-    }
-    fit.message = fmt::format(
-        "dials found by growing networks in the basin and regressing what they measure; in the last of {} rounds the "
-        "dial that changed most changed by {:.2g} standard errors",
-        found.rounds, found.last_step);
-    if (!fit.converged) fit.notes.push_back("growth: errors leave out how far the dials change from round to round");
-}
-
 }  // namespace
 
 DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, std::uint64_t seed,
@@ -240,7 +224,7 @@ DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, s
                  {"flint_q", m.flint.exponent, links, "slopes of links by magnitude", true}};
     const std::vector<FittedDial> divides = take_divides(m.divides, fit);
     const auto matched = matched_dials(m);
-    infer::MatchOptions options{.ranges = {}, .rounds = match_rounds, .draws = draws_for(links), .seed = seed};
+    infer::MatchOptions options{.ranges = {}, .rounds = 4, .draws = draws_for(links), .seed = seed};
     for (const MatchedDial& dial : matched) options.ranges.push_back(dial.range);
     const auto model = [&](std::span<const double> values, std::uint64_t number) {
         return telling_measures(grown_measures(basin, with(fit.dials, matched, values), number));

@@ -48,6 +48,6 @@ struct DialsFit {
 /// on its stream, the way to the divide, sidewalls and sides are changed by what grows later, so the dial is not what
 /// is measured. The check is over 20 further seeds. Throws Error for what `grow` refuses, and for measures without C or
 /// Flint's law.
-DialsFit fit_dials(const grow::Basin&, const channel::GrowthMeasures&, std::uint64_t seed);
+DialsFit fit_dials(const grow::Basin&, const channel::GrowthMeasures&, std::uint64_t seed, const GrowthRules& = {});
 
 }  // namespace thalweg::study
