@@ -127,6 +127,7 @@ def options_of(arguments):
     parser.add_argument("--thalweg", default=os.path.join(HERE, "..", "build", "release", "bin", "thalweg"))
     parser.add_argument("--out", default=os.path.join(HERE, "..", "build", "papers"))
     options = parser.parse_args(arguments)
+    options.out = os.path.abspath(options.out)  # experiments name files beside them by their own place
     if options.quick and options.record:
         raise harness.Failure("--quick and --record exclude each other: only full runs are recorded")
     return options
