@@ -298,6 +298,12 @@ std::string fit_growth(const fs::path& path, const GrowthFitOptions& options, co
     GrowthFit fit = fit_growth(catchment, target.measure, options.seed);
     fit.notes.insert(fit.notes.end(), dem.warnings.begin(), dem.warnings.end());
     for (const std::string& warning : fit.site.warnings) messages.warning(warning);
+    if (!fit.dials.converged()) {
+        fit.notes.push_back(fmt::format("the dials did not come to rest: the last round moved one by {:.2g} standard "
+                                        "errors, so the intervals are too narrow; another --seed shows how far",
+                                        fit.dials.last_step));
+        messages.warning(fit.notes.back());
+    }
     return write_growth_fit(fit, target.measured_on, folder);
 }
 
