@@ -155,9 +155,8 @@ NamedRaster read_dem(const std::filesystem::path& path, const io::ReadOptions& o
 std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const std::filesystem::path& folder,
                     const Messages& messages) {
     messages.progress("routing flow and measuring");
-    std::future<void> written;  // while the rest is measured
     RasterMeasurement m = measure_raster(dem.raster, options, [&](const RoutedTerrain& terrain) {
-        written = std::async(std::launch::async, [&dem, &folder, layers = routed_layers(terrain)] {
+        return std::async(std::launch::async, [&dem, &folder, layers = routed_layers(terrain)] {
             write_routed(dem.raster, layers, folder);
         });
     });
@@ -194,7 +193,6 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
                      "no cell has all eight neighbours, or the surface is level where they are", notes);
     }
     summary["notes"] = notes;
-    written.get();
     write_orders(dem.raster, m.statistics, folder);
     write_tables(dem.raster, m.statistics, folder);
     std::string text = text_of(summary);

@@ -321,7 +321,7 @@ ChiStatistics measure_chi(const RoutedTerrain& carved, const MeasureOptions& opt
 }
 
 RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& options,
-                                 const std::function<void(const RoutedTerrain&)>& when_routed) {
+                                 const std::function<std::future<void>(const RoutedTerrain&)>& when_routed) {
     RasterMeasurement m;
     const auto boundary = boundary_of(raster, options, m.conditioning.endorheic_basins);
     m.terrain.cell_area_m2 = CellAreas(raster.grid);
@@ -340,7 +340,8 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
     m.terrain.offset_m = channel::offsets(raster.grid);
     m.terrain.elevation_m = std::move(surface);
 
-    if (when_routed) when_routed(m.terrain);
+    std::future<void> meanwhile;  // if measuring fails it is waited for before the arrays go
+    if (when_routed) meanwhile = when_routed(m.terrain);
     m.valid_cells = static_cast<Index>(m.terrain.graph.order.size());
     m.area_m2 = total_area(m.terrain);
     MeasureOptions resolved = with_channels_chosen(m.terrain, options, m.channel_evidence);
@@ -354,6 +355,7 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
     m.statistics = measure(m.terrain, raster.values, resolved, std::move(slopes), std::move(chi));
     const auto basins = static_cast<Index>(m.statistics.basins.size());
     add_perimeters(terrain::basin_perimeters(raster.grid, m.statistics.basin_of, basins), m.statistics);
+    if (meanwhile.valid()) meanwhile.get();
     return m;
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <future>
 #include <optional>
 #include <span>
 #include <vector>
@@ -245,9 +246,9 @@ struct RasterMeasurement {
 };
 
 /// Conditions, routes and measures a DEM. Throws Error when there is nothing to measure. `when_routed` is called before
-/// the statistics; the terrain's arrays change no more and stay where they are, even when the result is moved.
+/// the statistics; what it returns may read the terrain meanwhile and is waited for, however measuring ends.
 RasterMeasurement measure_raster(const Raster&, const MeasureOptions&,
-                                 const std::function<void(const RoutedTerrain&)>& when_routed = {});
+                                 const std::function<std::future<void>(const RoutedTerrain&)>& when_routed = {});
 
 /// Area of the cells with data, m².
 double data_area(const Raster&);
