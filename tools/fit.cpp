@@ -94,7 +94,8 @@ void add_fit(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
         "fit", "Fit k and m to the slope-area curve of a DEM or a simulation, or the dials of network growth");
     auto options = std::make_shared<Options>();
-    command->add_option("TARGET", options->target, "a DEM, or the folder of an analyze or simulate run")->required();
+    command->add_option("TARGET", options->target, "a DEM, or the folder of an analyze, simulate or grow run")
+        ->required();
     command->add_option("--uplift-m-per-yr", options->uplift,
                         "uplift rate; without it only theta, ks and k/u are told");
     command->add_option("--uplift-sd", options->uplift_sd, "its standard deviation (m/yr), carried into k's error");

@@ -108,7 +108,7 @@ void add_drawing_options(CLI::App& app, Options& o) {
                    "drainage area where the DEM's own channels begin [default: 0.1 % of the area, rounded to 1-2-5]");
     app.add_option("--tree-line-m", o.tree_line, "upper end of forests [default: at two thirds of the relief]");
     app.add_option("--snow-line-m", o.snow_line,
-                   "lower end of snow [default: at 85 % of the relief where that is above 800 m]");
+                   "lower end of snow [default: at 85 % of the relief, but not below 3000 m]");
 }
 
 void run(const Options& o) {

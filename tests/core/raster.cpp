@@ -51,3 +51,17 @@ TEST_CASE("Longitudes may be counted from elsewhere", "[raster]") {
     CHECK(cell_at(pacific, {-177.5, 0.5}) == none);
     CHECK(cell_at(pacific, {178.5, 0.5}) == none);
 }
+
+TEST_CASE("The nearest cell with data is found from inside, beside and among voids, the first of two as near") {
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    Raster raster{
+        plane_grid(2, 3, 10, 10), {.west = 100, .north = 50, .cell_width = 10, .cell_height = 10, .crs_wkt = ""}, {}};
+    raster.values = {1, nan, 3, 4, nan, 6};
+    CHECK(nearest_cell_with_data(raster, {105, 45}) == 0);
+    CHECK(nearest_cell_with_data(raster, {500, 0}) == 5);
+    CHECK(nearest_cell_with_data(raster, {114.9, 44}) == 0);
+    CHECK(nearest_cell_with_data(raster, {115, 44}) == 0);
+    CHECK(nearest_cell_with_data(raster, {115.1, 44}) == 2);
+    raster.values.assign(6, nan);
+    CHECK(nearest_cell_with_data(raster, {105, 45}) == none);
+}

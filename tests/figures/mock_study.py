@@ -255,3 +255,19 @@ def write_comparison(folder, real, made):
     write_json(os.path.join(folder, "comparison.json"), {
         "aspects": aspects, "a": {"name": "hills.tif", "terrain": real}, "b": {"name": "simulate", "terrain": made},
         "notes": {"scale": "the model's own spread is not measured yet"}})
+
+
+def write_growth(folder):
+    """What a study by network growth adds to a whole study: a terrain on a plane of its own."""
+    z = hills(50, 70) + 10
+    for step, raster in (("grow", "elevation.tif"), ("grown", "filled.tif")):
+        summary = write_terrain(os.path.join(folder, step), raster, z, (-2000.0, 1500.0), 80.0, None, 80.0, 40)
+        summary["input"] = {"area_m2": 2e7, "elevation_min_m": float(np.nanmin(z)), "elevation_max_m": float(np.nanmax(z))}
+        write_json(os.path.join(folder, step, "summary.json"), {"links": 77, **summary})
+    for step in ("growth_fit", "compare_grown"):
+        os.makedirs(os.path.join(folder, step))
+    dial = {"estimate": 1067.0, "standard_error": 34.0, "ci95": [999.0, 1134.0], "count": 163, "identified": True}
+    write_json(os.path.join(folder, "growth_fit", "fit.json"), {
+        "method": "growth", "growth": {"channel_maintenance_m": dial}, "check": [
+            {"measure": "divide_across_delta", "measured": 0.27, "grown_mean": 0.28, "grown_sd": 0.02}]})
+    write_json(os.path.join(folder, "compare_grown", "comparison.json"), {"aspects": [], "notes": []})

@@ -18,7 +18,7 @@ from html.parser import HTMLParser
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from osgeo import osr
+from osgeo import ogr, osr
 
 sys.dont_write_bytecode = True
 HERE = os.path.dirname(os.path.realpath(__file__))
@@ -28,6 +28,7 @@ import mock_study  # noqa: E402
 PROGRAM = os.environ.get("THALWEG_FIGURES", os.path.join(HERE, "..", "..", "tools", "figures", "thalweg_figures.py"))
 sys.path.insert(0, os.path.dirname(os.path.realpath(PROGRAM)))
 import curves  # noqa: E402
+import growth  # noqa: E402
 import maps  # noqa: E402
 import report  # noqa: E402
 import sides  # noqa: E402
@@ -206,14 +207,71 @@ class Figures(unittest.TestCase):
         for highest in (1, 4, 7, 12):
             drawing = Figure(figsize=(6.5, 4))
             FigureCanvasAgg(drawing)
-            maps.draw_key(drawing.add_subplot(), 1, highest, [("catchment", 0.5), ("the studied one", 1.4)])
+            beside = drawing.add_axes([0.02, 0, 0.7, 0.1])  # not in the middle, as beside a key of colours
+            maps.draw_key(beside, 1, highest, [("catchment", 0.5), ("the studied one", 1.4)])
             key = drawing.axes[0].get_legend()
             words = [text.get_text() for text in key.get_texts()]
-            self.assertLessEqual(key.get_window_extent(drawing.canvas.get_renderer()).width, drawing.bbox.width)
+            extent = key.get_window_extent(drawing.canvas.get_renderer())
+            self.assertGreaterEqual(extent.x0, 0)
+            self.assertLessEqual(extent.x1, drawing.bbox.width)
             self.assertEqual(words[0], "river of Strahler order 1")
             self.assertEqual(words[-2:], ["catchment", "the studied one"])
             if highest > 1:
                 self.assertIn(f"order {highest}", words)
+
+    def test_a_map_names_catchments_in_its_key_only_where_it_outlines_any(self):
+        folder = self.changeable()
+        raster, network = (os.path.join(folder, "basin", name) for name in ("filled.tif", "network.gpkg"))
+        self.assertIn("catchment", self.key_of(maps.single(raster, network)[0]))
+        source = ogr.Open(network, 1)
+        source.ExecuteSQL("UPDATE basins SET area_m2 = 1")
+        del source
+        self.assertNotIn("catchment", self.key_of(maps.single(raster, network)[0]))
+
+    @staticmethod
+    def key_of(drawing):
+        keys = [axes.get_legend() for axes in drawing.axes if axes.get_legend()]
+        return [text.get_text() for text in keys[0].get_texts()]
+
+    def test_a_bin_without_an_error_is_told_from_those_with_one(self):
+        side = curves.Side("one", style.LOOK["real"], bins=([1e6, 2e6, 4e6], [0.1, 0.05, 0.02], [0.01, 0.01, np.nan]))
+        axes = Figure().add_subplot()
+        curves.draw_slope_area(axes, side)
+        drawn = {line.get_label(): list(line.get_xdata()) for line in axes.lines}
+        self.assertEqual(drawn["bins of one piece alone, error not known"], [4e6])
+        self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()],
+                         ["bins of one piece alone, error not known", "one: bin means ± 1 s.e."])
+
+    def test_terrains_without_common_coordinates_are_drawn_in_kilometres_from_their_middles(self):
+        folder = self.changeable()
+        mock_study.write_growth(folder)
+        real, grown = ([os.path.join(folder, step, name) for name in (raster, "network.gpkg")] + [step]
+                       for step, raster in (("basin", "filled.tif"), ("grow", "elevation.tif")))
+        axes = [each for each in maps.pair(real, grown).axes if each.get_xlabel()]
+        for each in axes[:2]:
+            self.assertEqual(each.get_xlabel(), "East of the middle (km)")
+            rivers = np.concatenate([path.vertices for path in each.collections[0].get_paths()])
+            (left, right), (bottom, top) = each.get_xlim(), each.get_ylim()
+            self.assertTrue(left < rivers[:, 0].min() < 0 < rivers[:, 0].max() < right)
+            self.assertTrue(bottom < rivers[:, 1].min() < 0 < rivers[:, 1].max() < top)
+        self.assertEqual(axes[0].get_xlim(), axes[1].get_xlim())
+        rows, cols = 60, 80  # of the real terrain: 1/1200 of a degree each
+        height = (rows / 1200) * 111.32
+        width = (cols / 1200) * 111.32 * np.cos(np.radians(36.6 - rows / 2400))
+        image = axes[0].images[0].get_extent()
+        margin = 1 + 2 * round(0.03 * cols) / np.array([cols, rows])
+        np.testing.assert_allclose([image[1] - image[0], image[3] - image[2]], [width, height] * margin, rtol=1e-3)
+
+    def test_a_report_on_two_models_speaks_of_both_from_the_start(self):
+        folder = self.changeable()
+        mock_study.write_growth(folder)
+        both = study.Study(folder)
+        lead = report.header(both, "")
+        self.assert_says(lead, "stream-power and grown twins", "A network of 77 links grown there by empirical rules",
+                         "and the grown one", '<i class="grown" title="grown"></i>')
+        section = report.grown(both)
+        self.assert_says(section, "basin area per channel length, C</th><td>1 067</td>", "<td>m</td>")
+        self.assertEqual(growth.rows_of(both.growth_fit)[0][0], "divide across from a tributary: spread (0.27)")
 
     def test_the_area_of_a_dot_follows_its_length(self):
         side = curves.Side("one", style.LOOK["real"], cloud=([1e6, 2e6, 0], [0.1, 0.01, 0.1], np.array([10.0, 100.0, 1e9])))

@@ -164,3 +164,58 @@ TEST_CASE("Another coordinate system puts each height where it lies on the earth
     CHECK_THAT(error_of([&] { io::read_raster(path, {.reproject = "EPSG:4326", .cell_m = 30}); }),
                Contains("projected coordinate system"));
 }
+
+TEST_CASE("On larger cells heights are means over the same ground, and half a cell's ground needs data", "[window]") {
+    const TempFolder temp;
+    Raster fine = io::read_raster(write(temp, [](double x, double y) { return std::sin(x / 40) + y / 100; })).raster;
+    const double nan = std::nan("");
+    for (const Index row : {0u, 1u}) {
+        for (const Index col : {0u, 1u}) fine.values[row * 50 + col] = nan;  // all of the first block
+    }
+    fine.values[2] = fine.values[3] = fine.values[52] = nan;  // three quarters of the second
+    fine.values[4] = nan;                                     // a quarter of the third
+    const Raster large = io::on_larger_cells(fine, 2);
+    REQUIRE(large.grid.rows == 20);
+    REQUIRE(large.grid.cols == 25);
+    CHECK(large.placement.cell_width == Approx(60));
+    CHECK(large.grid.east_west[0] == Approx(60));
+    CHECK(large.placement.crs_wkt == fine.placement.crs_wkt);
+    CHECK(std::isnan(large.values[0]));
+    CHECK(std::isnan(large.values[1]));
+    CHECK(large.values[2] == Approx((fine.values[5] + fine.values[54] + fine.values[55]) / 3).epsilon(1e-12));
+    for (Index row = 0; row < 20; ++row) {
+        for (Index col = 3; col < 25; ++col) {
+            const Index at = 2 * row * 50 + 2 * col;
+            const double mean =
+                (fine.values[at] + fine.values[at + 1] + fine.values[at + 50] + fine.values[at + 51]) / 4;
+            CHECK(large.values[row * 25 + col] == Approx(mean).epsilon(1e-12));
+        }
+    }
+}
+
+TEST_CASE("Cells that do not nest cover the same ground by whole ones, also on degrees and without a place",
+          "[window]") {
+    for (const std::string& crs : {std::string("EPSG:4326"), std::string()}) {
+        const TempFolder temp;
+        const double step = crs.empty() ? 10 : 1.0 / 1200;
+        const Placement place{.west = 10, .north = 46, .cell_width = step, .cell_height = step, .crs_wkt = ""};
+        std::vector<double> values(41 * 53);
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = 3.0 * static_cast<double>(i % 53);
+        io::write_raster(temp / "fine.tif", plane_grid(41, 53, step, step), place, values, {});
+        const Raster fine = io::read_raster(temp / "fine.tif", {.crs = crs}).raster;
+        REQUIRE(fine.placement.geographic == !crs.empty());
+        const Raster large = io::on_larger_cells(fine, 1.5);
+        CHECK(large.grid.rows == 27);
+        CHECK(large.grid.cols == 35);
+        CHECK(large.placement.geographic == fine.placement.geographic);
+        CHECK(large.placement.west == fine.placement.west);
+        CHECK(large.placement.cell_width * 35 == Approx(fine.placement.cell_width * 53).epsilon(1e-12));
+        double fine_area = 0, large_area = 0;
+        for (const double area : fine.grid.cell_area) fine_area += area * 53;
+        for (const double area : large.grid.cell_area) large_area += area * 35;
+        CHECK(large_area == Approx(fine_area).epsilon(1e-9));
+        for (Index col = 2; col < 33; ++col) {  // a plane stays one
+            CHECK(large.values[13 * 35 + col] == Approx(3 * ((col + 0.5) * 53 / 35 - 0.5)).margin(0.3));
+        }
+    }
+}

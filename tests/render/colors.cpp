@@ -50,7 +50,7 @@ TEST_CASE("Gradients of a plane are exact, at the edge and beside no data too") 
 
 TEST_CASE("Colours go with elevation and gradient: plants below, rock on steep faces, snow above, water in channels") {
     const auto c =
-        natural({100, 200, 300, 2900, 3000, 3000, 100}, {0.1, 0.35, 1.5, 0.2, 0.2, 2.5, 0.01}, {0, 0, 0, 0, 0, 0, 1});
+        natural({100, 200, 300, 3900, 4000, 4000, 100}, {0.1, 0.35, 1.5, 0.2, 0.2, 2.5, 0.01}, {0, 0, 0, 0, 0, 0, 1});
     CHECK_FALSE(is_grey(c[0]));  // meadow, dry or green by the mottle
     CHECK_FALSE(is_white(c[0]));
     CHECK(is_green(c[1]));
@@ -62,10 +62,13 @@ TEST_CASE("Colours go with elevation and gradient: plants below, rock on steep f
     CHECK(is_blue(c[6]));
 }
 
-TEST_CASE("Low hills have no snow unless its line is named") {
-    const std::vector<double> heights{0, 50, 100}, gradient{0.1, 0.1, 0.1};
-    CHECK_FALSE(is_white(natural(heights, gradient)[2]));
-    CHECK(is_white(natural(heights, gradient, {}, 80)[2]));
+TEST_CASE("Hills have no snow unless its line is named, however much higher than their valleys they are") {
+    const std::vector<double> gradient{0.1, 0.1, 0.1};
+    for (const double top : {100.0, 1070.0, 2700.0}) {
+        const std::vector<double> heights{0, top / 2, top};
+        CHECK_FALSE(is_white(natural(heights, gradient)[2]));
+        CHECK(is_white(natural(heights, gradient, {}, 0.8 * top)[2]));
+    }
 }
 
 TEST_CASE("Tints by height rise from green to white and do not mind no data") {

@@ -4,6 +4,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -63,6 +64,28 @@ std::filesystem::path slope_of(const TempFolder& temp, const std::string& name, 
     io::write_raster(temp / name, plane_grid(size, size, 10, 10),
                      {.west = 5e5, .north = 4e6, .cell_width = 10, .cell_height = 10, .crs_wkt = ""}, t.elevation_m,
                      {});
+    return temp / name;
+}
+
+/// A DEM of square cells over rough ground that falls to the south-east: each cell holds the mean of a terrain drawn on
+/// a third of 10 m, so that a file of 30 m has the means of one of 10 m.
+std::filesystem::path rough_terrain(const TempFolder& temp, const std::string& name, Index size, double cell_m) {
+    const auto height = [](double x, double y) {
+        return 400 - 0.05 * (x + y) + 20 * std::sin(x / 90) * std::cos(y / 70) + 6 * std::sin(x / 23 + y / 31);
+    };
+    const auto places = static_cast<int>(std::lround(cell_m / 10 * 3));
+    const auto t = support::terrain_of(name, size, size, [&](Index row, Index col) {
+        double sum = 0;
+        for (int i = 0; i < places; ++i) {
+            for (int j = 0; j < places; ++j) {
+                sum += height((col + (i + 0.5) / places) * cell_m, (row + (j + 0.5) / places) * cell_m);
+            }
+        }
+        return sum / (places * places);
+    });
+    io::write_raster(temp / name, plane_grid(size, size, cell_m, cell_m),
+                     {.west = 5e5, .north = 4e6, .cell_width = cell_m, .cell_height = cell_m, .crs_wkt = ""},
+                     t.elevation_m, {});
     return temp / name;
 }
 
@@ -170,7 +193,9 @@ TEST_CASE("What a DEM was is told, and by what the sides were measured different
     other["routing"] = "mfd";
     other["conditioning"] = {{"method", "none"}};
     other["channels"]["edge_basins"] = "keep";
-    other["input"]["dx_m"] = other["input"]["dy_m"] = 30.0;
+    other["channels"]["rule"] = "drop";
+    other["chi"]["theta"] = 0.5;
+    other["input"]["dx_m"] = other["input"]["dy_m"] = 2.0;
     const Json unlike = compared(temp, dem, folder_of(temp, "b", other));
     const Json& input = unlike["a"]["input"];
     CHECK(input["file"] == "dem.tif");
@@ -178,8 +203,10 @@ TEST_CASE("What a DEM was is told, and by what the sides were measured different
     CHECK(input["valid_cells"] == 3600);
     CHECK(input["area_m2"] == 360000.0);
     CHECK(input["dx_m"] == 10.0);
-    for (const char* word : {"routing: d8 in a, mfd in b", "conditioning: fill in a, none in b",
-                             "basins that the edge cuts: drop in a, keep in b", "cells of 10 m in a, of 30 m in b"}) {
+    for (const char* word :
+         {"routing: d8 in a, mfd in b", "conditioning: fill in a, none in b",
+          "basins that the edge cuts: drop in a, keep in b", "cells of 10 m in a, of 2 m in b",
+          "rule that says where channels begin: area in a, drop in b", "theta of chi and ksn: 0.45 in a, 0.5 in b"}) {
         CHECK(unlike["notes"].dump().find(word) != std::string::npos);
     }
     for (const Json& note : compared(temp, dem, dem)["notes"]) {
@@ -200,4 +227,66 @@ TEST_CASE("Options that say how a DEM is read are refused where no side is a DEM
     CompareOptions keep;
     keep.measure.edge_basins = terrain::EdgeBasins::keep;  // that is how both are measured now
     CHECK(error_of([&] { compare(simulated, simulated, keep, temp / "out", {}); }).empty());
+}
+
+TEST_CASE("The finer of two rasters is brought to the coarser one's cells, whichever side it is", "[compare][cells]") {
+    const TempFolder temp;
+    const auto fine = rough_terrain(temp, "fine.tif", 120, 10), coarse = rough_terrain(temp, "coarse.tif", 40, 30);
+    const Json ab = compared(temp, fine, coarse), ba = compared(temp, coarse, fine);
+    CHECK(ab["cells"] == Json{{"rule", "common"},
+                              {"resampled", "a"},
+                              {"a_m", 30.0},
+                              {"b_m", 30.0},
+                              {"a_before_m", 10.0},
+                              {"b_before_m", 30.0}});
+    CHECK(ba["cells"]["resampled"] == "b");
+    CHECK(ab["a"]["input"]["rows"] == 40);
+    CHECK(ab["a"]["input"]["dx_m"] == 30.0);
+    CHECK(ab["a"]["input"]["area_m2"] == ab["b"]["input"]["area_m2"]);
+    CHECK(ab["notes"].dump().find("'fine.tif' was brought from cells of 10 m") != std::string::npos);
+    CHECK(ab["notes"].dump().find("depend on their size") == std::string::npos);
+    // The coarse file holds the means of the fine one's cells, so nothing is left between the two.
+    for (const Json& aspect : ab["aspects"]) {
+        if (aspect["distance"].is_number()) CHECK(aspect["distance"].get<double>() == Approx(0).margin(1e-6));
+    }
+    CHECK(distance(ab, "hypsometry") == Approx(distance(ba, "hypsometry")).margin(1e-12));
+}
+
+TEST_CASE("Each side may keep its own cells, and then a note tells", "[compare][cells]") {
+    const TempFolder temp;
+    const auto fine = rough_terrain(temp, "fine.tif", 120, 10), coarse = rough_terrain(temp, "coarse.tif", 40, 30);
+    CompareOptions own;
+    own.cells = CompareCells::own;
+    std::filesystem::create_directories(temp / "out");
+    const Json ab = Json::parse(compare(fine, coarse, own, temp / "out", {}));
+    CHECK(ab["cells"]["rule"] == "own");
+    CHECK(ab["cells"]["resampled"] == "neither");
+    CHECK(ab["a"]["input"]["rows"] == 120);
+    CHECK(ab["notes"].dump().find("cells of 10 m in a, of 30 m in b") != std::string::npos);
+    CHECK(ab["notes"].dump().find("give the DEM") == std::string::npos);
+}
+
+TEST_CASE("Cells that differ by a few per cent are left alone", "[compare][cells]") {
+    const TempFolder temp;
+    const auto one = rough_terrain(temp, "one.tif", 60, 10), other = rough_terrain(temp, "other.tif", 60, 10.4);
+    const Json ab = compared(temp, one, other);
+    CHECK(ab["cells"]["resampled"] == "neither");
+    CHECK(ab["a"]["input"]["rows"] == 60);
+    CHECK(ab["notes"].dump().find("depend on their size") == std::string::npos);
+}
+
+TEST_CASE("A finer terrain of which only the measures are left is warned of", "[compare][cells]") {
+    const TempFolder temp;
+    Json measured = drawn_summary();
+    measured["input"]["dx_m"] = measured["input"]["dy_m"] = 2.0;
+    const auto folder = folder_of(temp, "measured", measured);
+    const auto dem = rough_terrain(temp, "dem.tif", 60, 10);
+    std::vector<std::string> warnings;
+    std::filesystem::create_directories(temp / "out");
+    const Json ab = Json::parse(compare(folder, dem, {}, temp / "out",
+                                        {.warning = [&](const std::string& text) { warnings.push_back(text); }}));
+    CHECK(ab["cells"]["resampled"] == "neither");
+    const std::string advice = "give the DEM that '" + folder.string() + "' was measured on";
+    CHECK(std::ranges::count_if(warnings, [&](const auto& text) { return text.find(advice) != std::string::npos; }) ==
+          1);
 }

@@ -2,6 +2,8 @@
 // What a simulation writes of its slopes, and what a fit reads of them.
 #include "thalweg/study/fit.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -192,4 +194,34 @@ TEST_CASE("The fit of a study is that of its basin with the study's exponent, up
     CHECK(*simulated.river.k == Approx(in_study["k"].get<double>()).epsilon(1e-12));
     CHECK(*simulated.river.m == Approx(in_study["m"].get<double>()).epsilon(1e-12));
     CHECK(simulated.uplift.rate_m_per_yr == uplift);
+}
+
+TEST_CASE("A fit says which ground it is of and what to compare, of a DEM and of the folder of one alike") {
+    const TempFolder temp;
+    Experiment e = island(MeshKind::raster);
+    e.hillslope.talus_angle_deg.reset();
+    simulated(e, temp / "island");
+    const auto dem = temp / "island/elevation.tif";
+    FitOptions options;
+    options.fit.uplift_m_per_yr = uplift;
+    options.measure.channel_area_m2 = 5e5;
+    options.measure.edge_basins = terrain::EdgeBasins::keep;
+    std::vector<std::string> lines;
+    const Messages messages{.report = [&](const std::string& line) { lines.push_back(line); }};
+    std::filesystem::create_directories(temp / "fit");
+    const Json of_dem = Json::parse(fit(dem, options, temp / "fit", messages).json);
+    std::filesystem::create_directories(temp / "measured");
+    const Json summary = Json::parse(analyze(read_dem(dem, {}, {}), options.measure, temp / "measured", {}));
+    const double ground_km2 = summary["channels"]["basin_area_m2"].get<double>() / 1e6;
+    FitOptions of_folder;
+    of_folder.fit.uplift_m_per_yr = uplift;
+    const std::string covers = of_dem["covers"];
+    CHECK(covers ==
+          fmt::format("all catchments, those that the edge cuts too ({:.4g} km2 in all, channels from 0.5 km2 on)",
+                      ground_km2));
+    CHECK(fitted(temp / "measured", temp / "again", of_folder)["covers"] == covers);
+    REQUIRE(lines.size() == 1);
+    CHECK(lines[0].starts_with(covers + ": m "));
+    CHECK(lines[0].find(fmt::format("k*A0^m = {:.3g} m/yr", of_dem["k_at_reference_area"].get<double>())) !=
+          std::string::npos);
 }

@@ -115,10 +115,14 @@ def _draw_bins(axes, side):
     area, slope, error = (np.asarray(values, dtype=float) for values in side.bins)
     if area.size == 0:
         return
-    error = np.nan_to_num(error)
-    axes.errorbar(area, slope, yerr=[np.minimum(error, 0.95 * slope), error], linestyle="none",
+    known = np.isfinite(error)
+    low = np.minimum(error[known], 0.95 * slope[known])
+    axes.errorbar(area[known], slope[known], yerr=[low, error[known]], linestyle="none",
                   marker=side.look["marker"], markersize=4.2, markerfacecolor="white", markeredgewidth=1.0,
                   color=side.look["color"], elinewidth=0.9, capsize=0, zorder=6, label=f"{side.label}: bin means ± 1 s.e.")
+    if not known.all():
+        axes.plot(area[~known], slope[~known], linestyle="none", marker="x", markersize=4.2, markeredgewidth=1.0,
+                  color=side.look["color"], zorder=6, label="bins of one piece alone, error not known")
 
 
 def fitted_curve(fit, table):

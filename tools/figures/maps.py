@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.colors import Normalize
 from matplotlib.cm import ScalarMappable
 from matplotlib.patheffects import withStroke
+from matplotlib.transforms import blended_transform_factory
 from osgeo import gdal, ogr
 
 import style
@@ -33,7 +34,9 @@ class Terrain:
     geographic: bool
     referenced: bool          # has a coordinate system
     crs: str
-    scale: float              # file units to map units
+    scale: object             # file units to map units: a number, or one each way
+    middle: tuple = (0, 0)    # what of the file's units is 0 of the map's
+    local: bool = False       # map units are kilometres from a middle of its own
 
     @property
     def latitude(self):
@@ -47,6 +50,10 @@ class Terrain:
     @property
     def aspect(self):
         return 1 / np.cos(self.latitude) if self.geographic else 1.0
+
+    def on_map(self, points):
+        """Points of the file as points of the map."""
+        return (points - np.array(self.middle)) * self.scale
 
     def cell_metres(self):
         """East–west size per row (column vector) and north–south size of the cells as read."""
@@ -241,14 +248,17 @@ def draw_rivers(axes, path, terrain, lowest):
     rivers = read_lines(path, "links", f"strahler >= {lowest}")
     rivers.sort(key=lambda river: river[1].get("strahler") or 1)
     widths = [river_width(fields.get("strahler") or 1, lowest) for _, fields in rivers]
-    axes.add_collection(LineCollection([line * terrain.scale for line, _ in rivers], linewidths=widths,
+    axes.add_collection(LineCollection([terrain.on_map(line) for line, _ in rivers], linewidths=widths,
                                        colors=style.RIVER, capstyle="round", joinstyle="round", zorder=3))
 
 
 def draw_key(axes, lowest, highest, outlines):
     """What the widths of the rivers and the outlines mean, in axes of its own; `outlines`: (words, line width). One line
-    as wide as the figure at most: of many orders only every second or third one has room, and the highest."""
+    in the middle of the figure and as wide as that at most: of many orders only every second or third one has room, and
+    the highest."""
     axes.set_axis_off()
+    figure = axes.get_figure()
+    across = blended_transform_factory(figure.transFigure, axes.transAxes)
     for step in range(1, max(2, highest - lowest + 2)):
         orders = sorted({*range(lowest, highest + 1, step), *([highest] if highest >= lowest else [])})
         handles = [Line2D([], [], color=style.RIVER, linewidth=river_width(order, lowest), label=f"order {order}")
@@ -256,19 +266,23 @@ def draw_key(axes, lowest, highest, outlines):
         if handles:
             handles[0].set_label(f"river of Strahler order {lowest}")
         handles += [Line2D([], [], color=style.DIVIDE, linewidth=width, label=words) for words, width in outlines]
-        key = axes.legend(handles=handles, loc="center", ncol=len(handles), frameon=False, handlelength=1.8, columnspacing=1.4)
-        figure = axes.get_figure()
+        if not handles:
+            return
+        key = axes.legend(handles=handles, loc="center", ncol=len(handles), frameon=False, handlelength=1.8,
+                          columnspacing=1.4, bbox_to_anchor=(0.5, 0.5), bbox_transform=across)
+        key.set_in_layout(False)
         if key.get_window_extent(figure.canvas.get_renderer()).width <= 0.94 * figure.bbox.width:
             return
 
 
 def draw_basins(axes, path, terrain, width=0.5):
-    """Outlines of the basins that are large enough to be seen (a three-hundredth of the map)."""
+    """Outlines of the basins that are large enough to be seen (a three-hundredth of the map); True where there are any."""
     dx, dy = terrain.cell_metres()
     smallest = float(np.sum(dx) * terrain.elevation.shape[1] * dy) / 300
     rings = read_lines(path, "basins", f"area_m2 >= {smallest:.6g}", limit=300)
-    axes.add_collection(LineCollection([ring * terrain.scale for ring, _ in rings], linewidths=width,
+    axes.add_collection(LineCollection([terrain.on_map(ring) for ring, _ in rings], linewidths=width,
                                        colors=style.DIVIDE, zorder=4))
+    return bool(rings)
 
 
 def draw_terrain(axes, terrain, limits, faded=None):
@@ -279,7 +293,9 @@ def draw_terrain(axes, terrain, limits, faded=None):
     axes.grid(False)
     for spine in axes.spines.values():
         spine.set_visible(True)
-    if terrain.geographic:
+    if terrain.local:
+        axes.set(xlabel="East of the middle (km)", ylabel="North of the middle (km)")
+    elif terrain.geographic:
         axes.set(xlabel="Longitude (°)", ylabel="Latitude (°)")
     elif terrain.referenced:
         axes.set(xlabel="Easting (km)", ylabel="Northing (km)")
@@ -329,10 +345,8 @@ def single(raster, network, studied=None):
     lowest = legible_order(lengths, terrain, panel)
     draw_terrain(axes, terrain, limits)
     draw_rivers(axes, network, terrain, lowest)
-    draw_basins(axes, network, terrain)
-    outlines = [("catchment", 0.5)]
-    if studied:
-        draw_basins(axes, studied, terrain, 1.4)
+    outlines = [("catchment", 0.5)] if draw_basins(axes, network, terrain) else []
+    if studied and draw_basins(axes, studied, terrain, 1.4):
         outlines.append(("the studied one", 1.4))
     draw_scale_bar(axes, terrain)
     draw_colours(drawing, axes, limits, [terrain])
@@ -342,13 +356,16 @@ def single(raster, network, studied=None):
 
 def pair(real, synthetic):
     """Two maps at one scale and one range of colours; each argument is (raster, network, title). The real terrain is cut
-    to the synthetic one's window when both share coordinates, and steps back where nothing was simulated."""
+    to the synthetic one's window when both share coordinates, and steps back where nothing was simulated; without common
+    coordinates both are drawn in kilometres from their middles."""
     second = _with_margin(read_terrain(synthetic[0]))
     first = read_terrain(real[0])
     faded = None
     if _overlap(first, second):
         first = read_terrain(real[0], second.extent)
         first, second, faded = _aligned(first, second)
+    else:
+        first, second = _in_kilometres(_with_margin(first)), _in_kilometres(second)
     shown = first if faded is None else replace(first, elevation=np.where(faded, np.nan, first.elevation))
     limits = height_range(shown, second)
     span = [max(_span_km(t)[i] for t in (first, second)) for i in (0, 1)]
@@ -359,18 +376,18 @@ def pair(real, synthetic):
     lengths = [river_lengths(network) for _, network, _ in (real, synthetic)]
     lowest = max(legible_order(each, terrain, panel * _span_km(terrain)[0] / span[0])
                  for each, terrain in zip(lengths, (first, second)))
+    outlined = False
     for axis, terrain, (_, network, title), fade in zip(axes, (first, second), (real, synthetic), (faded, None)):
         draw_terrain(axis, terrain, limits, fade)
         _centre(axis, terrain, span)
         draw_rivers(axis, network, terrain, lowest)
-        draw_basins(axis, network, terrain, 0.7)
+        outlined |= draw_basins(axis, network, terrain, 0.7)
         draw_scale_bar(axis, terrain)
         axis.set_title(title)
-    if faded is not None:
-        axes[1].set_ylabel("")
+    axes[1].set_ylabel("")
     draw_colours(drawing, axes, limits, [shown, second])
     highest = max((order for each in lengths for order in each), default=0)
-    draw_key(drawing.add_subplot(grid[1, :]), lowest, highest, [("catchment", 0.7)])
+    draw_key(drawing.add_subplot(grid[1, :]), lowest, highest, [("catchment", 0.7)] if outlined else [])
     return drawing
 
 
@@ -382,6 +399,21 @@ def _with_margin(terrain, share=0.03):
     dx, dy = (right - left) / cols, (top - bottom) / rows
     extent = (left - pad * dx, right + pad * dx, bottom - pad * dy, top + pad * dy)
     return replace(terrain, elevation=np.pad(terrain.elevation, pad, constant_values=np.nan), extent=extent)
+
+
+def _in_kilometres(terrain):
+    """The same terrain on a map of kilometres from the middle of its data."""
+    left, right, bottom, top = terrain.extent
+    scale = np.array([terrain.km_per_unit, terrain.km_per_unit * terrain.aspect])
+    valid = np.isfinite(terrain.elevation)
+    rows, cols = (np.flatnonzero(valid.any(axis=axis)) for axis in (1, 0))
+    dx, dy = (right - left) / valid.shape[1], (top - bottom) / valid.shape[0]
+    middle = np.array([left, top])
+    if rows.size:
+        middle += [0.5 * dx * (cols[0] + cols[-1] + 1), -0.5 * dy * (rows[0] + rows[-1] + 1)]
+    x, y = ((np.array(terrain.extent).reshape(2, 2) - middle[:, None]) * scale[:, None]).tolist()
+    return replace(terrain, extent=(*x, *y), geographic=False, scale=scale * terrain.scale,
+                   middle=tuple(middle / terrain.scale), local=True)
 
 
 def _overlap(first, second):

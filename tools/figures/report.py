@@ -57,9 +57,15 @@ def header(study, links):
     version = get(study.manifest, "version")
     program = "Thalweg" + (f" {escape(str(version))}" if version else "")
     return (f'<header><p class="kicker">{program} · study report</p>'
-            f"<h1>{escape(study.name())}: a real terrain and its {'grown' if study.grown_alone else 'stream-power'} twin</h1>"
+            f"<h1>{escape(study.name())}: a real terrain and its {_twins(study)}</h1>"
             f"<nav>{links}</nav></header>"
             f'<p class="lead">{summary_text.sentences(study)}</p>{summary_text.headline(study)}')
+
+
+def _twins(study):
+    if study.grown:
+        return "stream-power and grown twins"
+    return "grown twin" if study.grown_alone else "stream-power twin"
 
 
 def picture(content, kind, alt, caption, css=""):
@@ -283,7 +289,8 @@ def _fit_words(content):
     state = "converged" if content.get("converged") else "did not converge"
     message = f" ({escape(str(content['message']))})" if content.get("message") else ""
     message = "" if content.get("converged") else message
-    return (f"<p>Method <i>{method}</i> on drainage areas{area}, given {given}. It {state} in "
+    ground = f" of {escape(content['covers'])}" if content.get("covers") else ""
+    return (f"<p>Method <i>{method}</i> on drainage areas{area}{ground}, given {given}. It {state} in "
             f"{show(content.get('iterations'))} iterations{message}; reduced χ² {show(content.get('reduced_chi2'))}.</p>")
 
 
@@ -367,12 +374,13 @@ def grown(study):
 
 
 def _grown_pictures(study):
-    real = (study.step("measure/filled.tif"), study.step(f"{study.real_step}/network.gpkg"), "Real")
+    real = (study.step(f"{study.real_step}/filled.tif"), study.step(f"{study.real_step}/network.gpkg"), "Real")
     beside = (study.step("grow/elevation.tif"), study.step("grown/network.gpkg"), "Grown")
     names = "real, stream-power and grown"
     return (picture(style.png(maps.pair(real, beside), palette=True), "png",
                     "Shaded relief maps of the real and of the grown terrain, with their rivers.",
-                    "<b>Figure 7.</b> Real and grown terrain, as in Figure 1.")
+                    "<b>Figure 7.</b> The studied catchment and the grown terrain, at one scale and one range of colours; as "
+                    "in Figure 1, blue lines are rivers, wider with Strahler order.")
             + picture(style.svg(curves.hypsometry(study.all_sides())), "svg+xml", f"Hypsometric curves: {names}.",
                       f"<b>Figure 8.</b> Hypsometric curves: {names}.", "narrow")
             + picture(style.svg(curves.horton(study.all_sides())), "svg+xml", f"Horton plots: {names}.",
@@ -383,9 +391,12 @@ def _dials(study):
     rows = []
     for name, dial in (study.growth_fit.get("growth") or {}).items():
         open_words = "" if dial.get("identified") else " (left open by the network)"
-        rows.append([f"<code>{escape(name)}</code>{open_words}", show(dial.get("estimate"), 4),
-                     number(dial.get("standard_error"), 2), interval(dial.get("ci95"), 3) or DASH, show(dial.get("count"))])
-    return table(["dial", "value", "standard error", "95 % interval", "measured on"], rows)
+        words, unit = growth.DIALS.get(name, ("", DASH))
+        rows.append([f"<code>{escape(name)}</code> {words}{open_words}", show(dial.get("estimate"), 4),
+                     number(dial.get("standard_error"), 2), interval(dial.get("ci95"), 3) or DASH, unit,
+                     show(dial.get("count"))])
+    return ("<p>The dials, with which <code>thalweg grow growth_fit/growth.toml</code> grows another network of the kind:</p>"
+            + table(["dial", "value", "standard error", "95 % interval", "unit", "places it was measured at"], rows))
 
 
 def _grown_comparison(study):

@@ -8,7 +8,7 @@ from words import fixed, height_decimals, number, plain, quantity
 
 def sentences(study):
     """What was measured, what it was fitted with, how the synthetic terrain came out, and how high both are."""
-    return " ".join(filter(None, (measured(study), fitted(study), compared(study), heights(study))))
+    return " ".join(filter(None, (measured(study), fitted(study), compared(study), grown(study), heights(study))))
 
 
 def measured(study):
@@ -60,19 +60,32 @@ def _span(low, high):
 
 def compared(study):
     nodes = study.simulate.get("nodes")
-    text = "A stream-power landscape" + (f" of {number(nodes)} nodes" if nodes is not None else "") + " grown with these values"
+    text = "A stream-power landscape" + (f" of {number(nodes)} nodes" if nodes is not None else "") + " simulated with these values"
     if study.grown_alone:
         text = f"A network of {number(study.grow.get('links'))} links grown there with measured dials, and the surface over it,"
+    return f"{text} {_measures(study, 1)}."
+
+
+def grown(study):
+    """The network that was grown beside the simulation."""
+    if not study.grown:
+        return ""
+    return (f"A network of {number(study.grow.get('links'))} links grown there by empirical rules, with a surface over it, "
+            f"{_measures(study, 2)}.")
+
+
+def _measures(study, which):
+    """What one of the synthetic terrains has, and what the real one."""
     pairs = []
     for label, path, digits in (("a hypsometric integral of", "hypsometry.integral", 3),
                                 ("a concavity θ by regression of", "slope_area.theta", 3),
                                 ("a bifurcation ratio of", "horton.RB.regression", 3)):
-        real, synthetic = (study.value(which, path)[0] for which in (0, 1))
+        real, synthetic = (study.value(each, path)[0] for each in (0, which))
         if real is not None and synthetic is not None:
             pairs.append(f"{label} {number(synthetic, digits)} (real: {number(real, digits)})")
     if not pairs:
-        return text + " stands beside it."
-    return f"{text} has {', '.join(pairs[:-1])}{' and ' if len(pairs) > 1 else ''}{pairs[-1]}."
+        return "stands beside it"
+    return f"has {', '.join(pairs[:-1])}{' and ' if len(pairs) > 1 else ''}{pairs[-1]}"
 
 
 def heights(study):
@@ -83,11 +96,16 @@ def heights(study):
     decimals = height_decimals(max(real[2], synthetic[2]))
     words = (f"The real ground rises {fixed(real[2], decimals)} m from its lowest to its highest point, the synthetic one "
              f"{fixed(synthetic[2], decimals)} m")
+    third = study.relief(2) if study.grown else None
+    if third is not None:
+        words = words.replace("synthetic one", "stream-power one") + f" and the grown one {fixed(third[2], decimals)} m"
     if min(real[2], synthetic[2]) <= 0:
         return words + "."
     ratio = synthetic[2] / real[2]
     if 1 / FAR_OFF <= ratio <= FAR_OFF:
         return words + "."
+    if third is not None:
+        words += "; the stream-power one"
     return f"{words}, {number(ratio, 2)} times as much. {_why_relief_differs(study)}"
 
 
@@ -113,21 +131,23 @@ def headline(study):
                                         ("Hypsometric integral (–)", "hypsometry.integral", 1, 3),
                                         ("Drainage density (km/km²)", "channels.drainage_density_per_m", 1e3, 3),
                                         ("Bifurcation ratio (–)", "horton.RB.regression", 1, 3)):
-        both = [study.value(which, path)[0] for which in (0, 1)]
-        cards.append(_card(title, [number(None if value is None else float(value) * factor, digits) for value in both]))
+        all_sides = [study.value(which, path)[0] for which in range(len(study.all_sides()))]
+        cards.append(_card(title, [number(None if value is None else float(value) * factor, digits) for value in all_sides]))
+    third = "&ensp;<span class=\"grown\">■ grown</span> " if study.grown else ""
     return ('<div class="numbers">' + "".join(cards) + "</div><p class=\"footnotes\"><span class=\"real\">● real</span> "
-            "&ensp;<span class=\"synthetic\">▲ synthetic</span> – the same colours and marks throughout.</p>")
+            f"&ensp;<span class=\"synthetic\">▲ synthetic</span> {third}– the same colours and marks throughout.</p>")
 
 
 def _card(title, shown):
-    return (f'<div><b>{title}</b><span><i class="real" title="real"></i>{shown[0]}</span>'
-            f'<span><i class="synthetic" title="synthetic"></i>{shown[1]}</span></div>')
+    values = "".join(f'<span><i class="{side}" title="{side}"></i>{value}</span>'
+                     for side, value in zip(("real", "synthetic", "grown"), shown))
+    return f"<div><b>{title}</b>{values}</div>"
 
 
 def _relief_card(study):
-    both = [study.relief(which) for which in (0, 1)]
-    decimals = height_decimals(max((each[2] for each in both if each), default=0))
-    return _card("Relief (m)", [fixed(each and each[2], decimals) for each in both])
+    reliefs = [study.relief(which) for which in range(len(study.all_sides()))]
+    decimals = height_decimals(max((each[2] for each in reliefs if each), default=0))
+    return _card("Relief (m)", [fixed(each and each[2], decimals) for each in reliefs])
 
 
 def run_sentence(run, solver):

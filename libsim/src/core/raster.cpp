@@ -2,6 +2,7 @@
 #include "thalweg/core/raster.hpp"
 
 #include <cmath>
+#include <limits>
 
 #include "thalweg/core/index.hpp"
 
@@ -26,6 +27,20 @@ Index cell_at(const Raster& raster, Point point) {
         col = along((turned - p.west) / p.cell_width, raster.grid.cols);
     }
     return row == none || col == none ? none : row * raster.grid.cols + col;
+}
+
+Index nearest_cell_with_data(const Raster& raster, Point point) {
+    Index nearest = none;
+    double least = std::numeric_limits<double>::infinity();
+    for (Index cell = 0; cell < raster.grid.size(); ++cell) {
+        if (std::isnan(raster.values[cell])) continue;
+        const Point center = raster.placement.center(raster.grid.row(cell), raster.grid.col(cell));
+        const double distance = std::hypot(center.x - point.x, center.y - point.y);
+        if (!(distance < least)) continue;
+        least = distance;
+        nearest = cell;
+    }
+    return nearest;
 }
 
 }  // namespace thalweg

@@ -234,4 +234,23 @@ ReadResult read_raster(const std::filesystem::path& path, const ReadOptions& opt
     }
 }
 
+Raster on_larger_cells(const Raster& raster, double times) {
+    const GdalGuard gdal;
+    const auto fewer = [times](Index count) {
+        return std::clamp<Index>(static_cast<Index>(std::lround(count / times)), std::min<Index>(2, count), count);
+    };
+    const Index rows = fewer(raster.grid.rows), cols = fewer(raster.grid.cols);
+    const std::string name = "the terrain on larger cells";
+    const auto read = [&](const Raster& fine) { return read_dataset(*on_cells(fine, rows, cols), name, {}, gdal); };
+    Raster share = raster;
+    for (double& value : share.values) value = std::isnan(value) ? 0 : 1;
+    const std::vector<double> with_data = read(share).raster.values;
+    ReadResult large = read(raster);
+    for (std::size_t cell = 0; cell < with_data.size(); ++cell) {
+        if (with_data[cell] < 0.5) large.raster.values[cell] = no_value;
+    }
+    check_any_data(large, name);
+    return std::move(large.raster);
+}
+
 }  // namespace thalweg::io

@@ -80,6 +80,9 @@ double mean_step(const std::vector<double>& steps) {
     return steps.empty() ? 0 : sum / static_cast<double>(steps.size());
 }
 
+/// How the warper interpolates onto cells so many times as wide.
+const char* resampling(double times) { return times > 1.9 ? "average" : "bilinear"; }
+
 CPLStringList warp_arguments(const Raster& raster, const std::string& name, const ReadOptions& options) {
     CPLStringList arguments;
     const auto add = [&](std::initializer_list<std::string> words) {
@@ -100,8 +103,7 @@ CPLStringList warp_arguments(const Raster& raster, const std::string& name, cons
         const std::string step = fmt::format("{:.17g}", *options.cell_m / system.GetLinearUnits());
         add({"-tr", step, step});
     }
-    const bool wider = options.cell_m && *options.cell_m > 1.9 * wide;
-    add({"-r", wider ? "average" : "bilinear", "-et", "0"});
+    add({"-r", resampling(options.cell_m ? *options.cell_m / wide : 1), "-et", "0"});
     return arguments;
 }
 
@@ -142,8 +144,9 @@ DatasetPtr window_of(GDALDataset& dataset, const std::string& name, const ReadOp
     return view;
 }
 
-DatasetPtr warped(const Raster& raster, const std::string& name, const ReadOptions& options) {
-    CPLStringList arguments = warp_arguments(raster, name, options);
+namespace {
+
+DatasetPtr warp(const Raster& raster, const std::string& name, CPLStringList& arguments) {
     const DatasetPtr source = dataset_over(raster);
     const std::unique_ptr<GDALWarpAppOptions, decltype(&GDALWarpAppOptionsFree)> parsed(
         GDALWarpAppOptionsNew(arguments.List(), nullptr), GDALWarpAppOptionsFree);
@@ -152,6 +155,27 @@ DatasetPtr warped(const Raster& raster, const std::string& name, const ReadOptio
     if (!result) throw Error(fmt::format("{} cannot be put on other cells: {}", name, CPLGetLastErrorMsg()));
     result->GetRasterBand(1)->SetUnitType("m");
     return result;
+}
+
+}  // namespace
+
+DatasetPtr warped(const Raster& raster, const std::string& name, const ReadOptions& options) {
+    CPLStringList arguments = warp_arguments(raster, name, options);
+    return warp(raster, name, arguments);
+}
+
+DatasetPtr on_cells(const Raster& raster, Index rows, Index cols) {
+    const Placement& p = raster.placement;
+    const double east = p.west + raster.grid.cols * p.cell_width, south = p.north - raster.grid.rows * p.cell_height;
+    CPLStringList arguments;
+    const auto add = [&](std::initializer_list<std::string> words) {
+        for (const std::string& word : words) arguments.AddString(word.c_str());
+    };
+    const auto text = [](double number) { return fmt::format("{:.17g}", number); };
+    add({"-of", "MEM", "-te", text(p.west), text(south), text(east), text(p.north)});
+    add({"-ts", fmt::format("{}", cols), fmt::format("{}", rows)});
+    add({"-r", resampling(double(raster.grid.cols) / cols), "-et", "0"});
+    return warp(raster, "the terrain", arguments);
 }
 
 }  // namespace thalweg::io

@@ -21,4 +21,7 @@ DatasetPtr dataset_over(const Raster&);
 /// take part in neither. Throws Error for a system that GDAL does not know.
 DatasetPtr warped(const Raster&, const std::string& name, const ReadOptions&);
 
+/// The raster on so many cells over the same ground, in memory, interpolated in the same ways.
+DatasetPtr on_cells(const Raster&, Index rows, Index cols);
+
 }  // namespace thalweg::io

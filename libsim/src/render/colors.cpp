@@ -81,11 +81,13 @@ struct Lines {
     double blur;  ///< m
 };
 
+/// About the height of the snow line in the Alps and the Rocky Mountains: hills of 1000 m are not to be white because
+/// nothing around is higher.
+constexpr double lowest_usual_snow_m = 3000;
+
 Lines lines_of(const Nature& nature, const Range& heights) {
-    const bool high = heights.size() > 800;
-    const double usual_snow = high ? heights.low + 0.85 * heights.size() : std::numeric_limits<double>::infinity();
     return {.trees = nature.tree_line_m.value_or(heights.low + 2.0 / 3 * heights.size()),
-            .snow = nature.snow_line_m.value_or(usual_snow),
+            .snow = nature.snow_line_m.value_or(std::max(lowest_usual_snow_m, heights.low + 0.85 * heights.size())),
             .blur = 0.06 * heights.size()};
 }
 
@@ -101,9 +103,8 @@ Rgb natural_color(double height, double gradient, double water, double mottle, c
     const Rgb bare = blend(rock, dark_rock, step(-0.2, 0.7, mottle));
     color = blend(color, bare, step(std::tan(30 * degree), std::tan(42 * degree), gradient + 0.1 * mottle));
     const double holds_snow = 1 - step(std::tan(45 * degree), std::tan(58 * degree), gradient);
-    const double snowy = std::isinf(lines.snow) ? 0
-                                                : step(lines.snow - lines.blur / 2, lines.snow + lines.blur / 2,
-                                                       height + lines.blur * mottle / 2);
+    const double snowy =
+        step(lines.snow - lines.blur / 2, lines.snow + lines.blur / 2, height + lines.blur * mottle / 2);
     color = blend(color, snow, snowy * holds_snow);
     return blend(color, river, water);
 }

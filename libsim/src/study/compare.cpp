@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -30,6 +31,7 @@ struct Side {
     Json summary{};
     std::vector<double> link_length_m{}, link_area_m2{};  ///< empty where a folder does not hold them
     std::optional<Index> outlet{};                        ///< of a raster that is one catchment
+    std::optional<double> brought_from_m{};               ///< size of the cells it came on, where others are used
 };
 
 Side analyzed_side(const fs::path& folder) {
@@ -65,6 +67,28 @@ Side load(const fs::path& path, const CompareOptions& options, const Messages& m
 double at(const Json& json, const char* pointer) {
     const Json::json_pointer where(pointer);
     return json.contains(where) && json.at(where).is_number() ? json.at(where).get<double>() : nan;
+}
+
+/// Side of a square as large as a cell, on the mean, m; NaN where a summary does not tell.
+double cell_size(const Side& side) {
+    if (!side.raster) return std::sqrt(at(side.summary, "/input/dx_m") * at(side.summary, "/input/dy_m"));
+    const Grid& grid = side.raster->raster.grid;
+    return std::sqrt(mean(grid.east_west) * mean(grid.north_south));
+}
+
+/// Within a few per cent nothing that is compared changes by more than terrain's own scatter.
+bool of_one_size(double a_m, double b_m) { return !(std::abs(std::log(a_m / b_m)) > std::log(1.05)); }
+
+/// Slopes, lengths and channels depend on the size of the cells: the finer raster takes that of the coarser one's.
+void bring_to_one_size(Side& a, Side& b, const Messages& messages) {
+    const double in_a = cell_size(a), in_b = cell_size(b);
+    Side& finer = in_a < in_b ? a : b;
+    if (of_one_size(in_a, in_b) || !finer.raster) return;
+    messages.progress(fmt::format("bringing '{}' to larger cells", finer.path.filename().string()));
+    finer.brought_from_m = std::min(in_a, in_b);
+    Raster& raster = finer.raster->raster;
+    raster = io::on_larger_cells(raster, std::max(in_a, in_b) / std::min(in_a, in_b));
+    if (finer.outlet) finer.outlet = grown_outlet(finer.path, raster);
 }
 
 /// One threshold for both: the user's, that of a side measured before, or the larger of the two defaults. Throws Error
@@ -111,29 +135,60 @@ void measure_side(Side& side, MeasureOptions options, double threshold_m2) {
     side.link_area_m2 = m.statistics.network.area_m2;
 }
 
+/// A word or a number of a summary; nothing where it is neither.
+std::string shown(const Json& value) {
+    if (value.is_string()) return value.get<std::string>();
+    return value.is_number() ? fmt::format("{:g}", value.get<double>()) : "";
+}
+
+/// What to do about cells of two sizes: an analyze folder has the numbers of its own cells and no more.
+std::string unlike_cells(const Side& a, const Side& b, const CompareOptions& options) {
+    const double in_a = cell_size(a), in_b = cell_size(b);
+    const Side& finer = in_a < in_b ? a : b;
+    const std::string what = fmt::format(
+        "cells of {:.4g} m in a, of {:.4g} m in b: slopes, lengths and channels depend on their size", in_a, in_b);
+    if (options.cells == CompareCells::own) return what;
+    return fmt::format(
+        "{}; give the DEM that '{}' was measured on instead of the folder, and it is brought to the larger "
+        "cells",
+        what, finer.path.string());
+}
+
+/// How the two summaries differ in one thing that was asked for, and what comes of it.
+struct Ruler {
+    const char *pointer, *what, *consequence;
+};
+
+constexpr const char* in_distances = "so that distances are not of the terrain alone";
+constexpr std::array rulers{
+    Ruler{"/routing", "routing", in_distances}, Ruler{"/conditioning/method", "conditioning", in_distances},
+    Ruler{"/channels/edge_basins", "basins that the edge cuts", in_distances},
+    Ruler{"/channels/rule", "rule that says where channels begin", "at the same drainage area nevertheless"},
+    Ruler{"/chi/theta", "theta of chi and ksn", "which no distance looks at: set neither chi nor ksn side by side"}};
+
 /// By what both sides were measured differently, besides the terrain: then part of every distance comes of that.
-std::vector<std::string> unlike_rulers(const Side& a, const Side& b) {
+std::vector<std::string> unlike_rulers(const Side& a, const Side& b, const CompareOptions& options) {
     std::vector<std::string> unlike;
-    for (const auto& [pointer, what] : {std::pair{"/routing", "routing"},
-                                        {"/conditioning/method", "conditioning"},
-                                        {"/channels/edge_basins", "basins that the edge cuts"}}) {
-        const Json::json_pointer where(pointer);
+    for (const Ruler& ruler : rulers) {
+        const Json::json_pointer where(ruler.pointer);
         if (!a.summary.contains(where) || !b.summary.contains(where)) continue;
-        const Json &in_a = a.summary.at(where), &in_b = b.summary.at(where);
-        if (in_a == in_b || !in_a.is_string() || !in_b.is_string()) continue;
-        unlike.push_back(fmt::format("{}: {} in a, {} in b, so that distances are not of the terrain alone", what,
-                                     in_a.get<std::string>(), in_b.get<std::string>()));
+        const std::string in_a = shown(a.summary.at(where)), in_b = shown(b.summary.at(where));
+        if (in_a == in_b || in_a.empty() || in_b.empty()) continue;
+        unlike.push_back(fmt::format("{}: {} in a, {} in b, {}", ruler.what, in_a, in_b, ruler.consequence));
     }
-    const auto cell = [](const Side& side) {
-        return std::sqrt(at(side.summary, "/input/dx_m") * at(side.summary, "/input/dy_m"));
-    };
-    if (std::abs(std::log(cell(a) / cell(b))) > std::log(1.05)) {
-        unlike.push_back(
-            fmt::format("cells of {:.4g} m in a, of {:.4g} m in b: slopes, lengths and channels depend on their size; "
-                        "bring the DEMs to one with --cell-m",
-                        cell(a), cell(b)));
-    }
+    if (!of_one_size(cell_size(a), cell_size(b))) unlike.push_back(unlike_cells(a, b, options));
     return unlike;
+}
+
+/// On cells of which size both sides came and were measured.
+Json cells_json(const Side& a, const Side& b, const CompareOptions& options) {
+    const char* resampled = a.brought_from_m ? "a" : b.brought_from_m ? "b" : "neither";
+    return {{"rule", options.cells == CompareCells::own ? "own" : "common"},
+            {"resampled", resampled},
+            {"a_m", number(cell_size(a))},
+            {"b_m", number(cell_size(b))},
+            {"a_before_m", number(a.brought_from_m.value_or(cell_size(a)))},
+            {"b_before_m", number(b.brought_from_m.value_or(cell_size(b)))}};
 }
 
 /// A curve of a summary as two rows of numbers; pairs with a null are left out.
@@ -338,6 +393,11 @@ Json side_json(const Side& side) {
 std::vector<std::string> notes_of(const Side& a, const Side& b, const Json& aspects) {
     std::vector<std::string> notes{
         "scale: the spread between realisations of a model is not computed, so no difference is judged"};
+    for (const Side* side : {&a, &b}) {
+        if (!side->brought_from_m) continue;
+        notes.push_back(fmt::format("cells: '{}' was brought from cells of {:.4g} m to the other side's, of {:.4g} m",
+                                    side->path.filename().string(), *side->brought_from_m, cell_size(*side)));
+    }
     for (const Json& aspect : aspects) {
         if (!aspect.at("distance").is_null()) continue;
         notes.push_back(fmt::format("{}: the sides have nothing in common by which to measure a distance",
@@ -371,18 +431,20 @@ std::string compare(const fs::path& a_path, const fs::path& b_path, const Compar
     Side a = load(a_path, options, messages), b = load(b_path, options, messages);
     const double threshold = common_threshold(a, b, options);
     refuse_idle_options(a, b, options);
+    if (options.cells == CompareCells::common) bring_to_one_size(a, b, messages);
     messages.progress("measuring both sides");
     measure_side(a, options.measure, threshold);
     measure_side(b, options.measure, threshold);
     try {
         const Json aspects = all_aspects(a, b);
-        std::vector<std::string> notes = unlike_rulers(a, b);
+        std::vector<std::string> notes = unlike_rulers(a, b, options);
         for (const std::string& note : notes) messages.warning(note);
         const auto of_sides = notes_of(a, b, aspects);
         notes.insert(notes.end(), of_sides.begin(), of_sides.end());
         const Json comparison{{"a", side_json(a)},
                               {"b", side_json(b)},
                               {"channel_threshold_area_m2", threshold},
+                              {"cells", cells_json(a, b, options)},
                               {"aspects", aspects},
                               {"notes", notes}};
         std::string text = text_of(comparison);

@@ -21,8 +21,32 @@ struct Target {
     std::vector<channel::SlopeAreaBin> bins;
     std::string measured_on;
     Json steady_check;
+    std::string covers{};                 ///< the ground and the channels behind it, in words
     std::vector<std::string> warnings{};  ///< of reading it
 };
+
+/// Fits of one DEM differ by this: `run` takes its largest complete catchment alone, with channels from a share of
+/// that.
+std::string words_of_cover(double basin_area_m2, double threshold_m2, terrain::EdgeBasins rule) {
+    const char* which =
+        rule == terrain::EdgeBasins::keep ? "all catchments, those that the edge cuts too" : "the complete catchments";
+    const std::string from =
+        std::isnan(threshold_m2) ? "" : fmt::format(", channels from {:.4g} km2 on", threshold_m2 / 1e6);
+    return fmt::format("{} ({:.4g} km2 in all{})", which, basin_area_m2 / 1e6, from);
+}
+
+double number_or_nan(const Json& json) { return json.is_number() ? json.get<double>() : std::nan(""); }
+
+/// The same of an analyze folder; nothing where its summary does not tell.
+std::string cover_of(const fs::path& folder) {
+    if (!fs::is_regular_file(folder / "summary.json")) return "";
+    const Json channels = read_json(folder / "summary.json").value("channels", Json::object());
+    const double area = number_or_nan(channels.value("basin_area_m2", Json()));
+    if (std::isnan(area)) return "";
+    const bool keep = channels.value("edge_basins", Json()) == edge_basins_name(terrain::EdgeBasins::keep);
+    return words_of_cover(area, number_or_nan(channels.value("threshold_area_m2", Json())),
+                          keep ? terrain::EdgeBasins::keep : terrain::EdgeBasins::drop);
+}
 
 /// Nodes of a simulation whose slope the river made, not the talus limit.
 Target node_target(const fs::path& folder) {
@@ -38,7 +62,8 @@ Target node_target(const fs::path& folder) {
     return {.bins = channel::slope_area_bins(points),
             .measured_on = "nodes",
             .steady_check = {{"converged", summary.value("converged", Json())},
-                             {"mean_rate_m_per_yr", summary.value("mean_rate_m_per_yr", Json())}}};
+                             {"mean_rate_m_per_yr", summary.value("mean_rate_m_per_yr", Json())}},
+            .covers = "the simulation's nodes but those at the talus limit"};
 }
 
 Target analyzed_target(const fs::path& folder) {
@@ -47,7 +72,8 @@ Target analyzed_target(const fs::path& folder) {
     const auto& slope = numbers_of(table, "slope");
     const auto& slope_se = numbers_of(table, "slope_se");
     const auto& count = numbers_of(table, "count");
-    Target target{.bins = {}, .measured_on = "analyze folder", .steady_check = Json::object()};
+    Target target{
+        .bins = {}, .measured_on = "analyze folder", .steady_check = Json::object(), .covers = cover_of(folder)};
     for (std::size_t i = 0; i < area.size(); ++i) {
         const bool counted = count[i] >= 1 && count[i] < none && count[i] == std::floor(count[i]);
         if (!counted || (count[i] > 1 && !(slope_se[i] >= 0))) {
@@ -66,9 +92,11 @@ Target raster_target(const fs::path& file, const FitOptions& options, const Mess
     MeasureOptions measure = options.measure;
     if (options.outlet) dem = cut_to_outlet(dem, *options.outlet, measure, messages);
     messages.progress("routing flow and measuring");
-    return {.bins = measure_raster(dem.raster, measure).statistics.slope_area.bins,
+    const Statistics s = measure_raster(dem.raster, measure).statistics;
+    return {.bins = s.slope_area.bins,
             .measured_on = "raster",
             .steady_check = Json::object(),
+            .covers = words_of_cover(s.channels.basin_area_m2, s.channels.threshold_area_m2, s.channels.edge_basins),
             .warnings = dem.warnings};
 }
 
@@ -128,6 +156,7 @@ Json fit_json(const infer::SlopeAreaFit& f, const FitOptions& options, const Tar
     const auto& u = options.fit.uplift_m_per_yr;
     return {{"method", "slope-area"},
             {"measured_on", target.measured_on},
+            {"covers", target.covers},
             {"n", f.n},
             {"uplift_m_per_yr", u ? Json(*u) : Json(nullptr)},
             {"uplift_sd_m_per_yr", options.fit.uplift_sd_m_per_yr},
@@ -168,12 +197,25 @@ Table curve_table(const infer::SlopeAreaFit& f) {
     return table;
 }
 
+/// What to remember, in a line: k by itself is hardly a number.
+std::string fit_line(const infer::SlopeAreaFit& f, const Target& target) {
+    const std::string where = target.covers.empty() ? target.measured_on : target.covers;
+    if (!f.k) {
+        return fmt::format("{}: theta {:.3g}, ks {:.3g} m^{:.3g}; k needs an uplift rate", where, f.theta.value,
+                           f.ks.value, 2 * f.theta.value);
+    }
+    const double area = f.reference_area_m2 / 1e6;
+    return fmt::format("{}: m {:.3g}, k*A0^m = {:.3g} m/yr at A0 = {:.3g} km2 (compare this, not k = {:.3g} {})", where,
+                       f.m.value, f.k_at_reference_area.value, area, f.k->value, f.k_unit);
+}
+
 }  // namespace
 
 FitOutcome fit(const fs::path& path, const FitOptions& options, const fs::path& folder, const Messages& messages) {
     const Target target = target_of(path, options, messages);
     messages.progress("fitting");
     FitOutcome outcome{infer::fit_slope_area(target.bins, options.fit), ""};
+    messages.report(fit_line(outcome.fit, target));
     outcome.json = text_of(fit_json(outcome.fit, options, target));
     io::write_csv(folder / "fit.csv", curve_table(outcome.fit));
     write_text(folder / "fit.json", outcome.json);

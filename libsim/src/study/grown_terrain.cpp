@@ -123,22 +123,12 @@ void put_on_map(const GrowthSite& site, Raster& raster) {
 
 /// The cell with data nearest to the trunk's outlet.
 Index outlet_cell(const GrownTerrain& t) {
-    const Raster& raster = t.elevation;
     const Point outlet{t.site.basin.outlet.x / t.site.unit_m, t.site.basin.outlet.y / t.site.unit_m};
-    Index nearest = none;
-    double least = std::numeric_limits<double>::infinity();
-    for (Index cell = 0; cell < raster.grid.size(); ++cell) {
-        if (std::isnan(raster.values[cell])) continue;
-        const Point center = raster.placement.center(raster.grid.row(cell), raster.grid.col(cell));
-        const double distance = std::hypot(center.x - outlet.x, center.y - outlet.y);
-        if (!(distance < least)) continue;
-        least = distance;
-        nearest = cell;
-    }
-    if (nearest == none) {
+    const Index cell = nearest_cell_with_data(t.elevation, outlet);
+    if (cell == none) {
         throw Error("output.resolution is too small: no cell's centre lies in the basin; ask for more cells");
     }
-    return nearest;
+    return cell;
 }
 
 /// The drainage area from which on the flow paths are as long as wanted.

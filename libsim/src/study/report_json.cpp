@@ -176,10 +176,12 @@ void explain_nulls(const Statistics& s, std::vector<std::string>& notes) {
     if (s.slope_area.bins.size() < 3) {
         notes.push_back("slope_area: fewer than three bins of drainage area, so no line was fitted");
     }
-    for (const auto& bin : s.slope_area.bins) {
-        if (bin.count > 1) continue;
-        notes.push_back("slope_area: a bin with a single point has no standard error");
-        break;
+    const auto single = std::ranges::count_if(s.slope_area.bins, [](const auto& bin) { return bin.count < 2; });
+    if (single > 0) {
+        notes.push_back(
+            fmt::format("slope_area: {} of {} bins hold one piece of river alone, as is usual at large areas: their "
+                        "slope_se is null, and lines weigh them by the scatter of the other bins",
+                        single, s.slope_area.bins.size()));
     }
 }
 
@@ -269,7 +271,7 @@ Json terrain_json(const TerrainInput& input, const Statistics& s, const Position
     if (!s.basins.empty()) {
         explain_null(
             "basins", summary["basins"],
-            "a basin without relief has no hypsometry; a length, a perimeter and what is made of them need a "
+            "nulls belong to basins that are too small for the number: one without relief has no hypsometry; a length, a perimeter and what is made of them need a "
             "basin of more than one cell (on a mesh the raster drawn of it), the asymmetry a trunk with "
             "inflows; theta and ks need three bins of drainage area, their errors four, ksn a river that falls "
             "by a segment's drop",

@@ -26,8 +26,8 @@ Index grown_outlet(const std::filesystem::path& folder, const Raster& raster) {
     const Json::json_pointer basin("/terrain/basins/0");
     if (summary.contains(basin)) {
         const Json& outlet = summary.at(basin);
-        const Index cell = cell_at(raster, {outlet.at("outlet_x").get<double>(), outlet.at("outlet_y").get<double>()});
-        if (cell != none) return cell;
+        const Point place{outlet.at("outlet_x").get<double>(), outlet.at("outlet_y").get<double>()};
+        if (cell_at(raster, place) != none) return nearest_cell_with_data(raster, place);
     }
     throw Error(fmt::format("'{}' does not say where the grown terrain's water leaves; grow it anew",
                             (folder / "summary.json").string()));

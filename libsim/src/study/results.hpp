@@ -17,8 +17,8 @@ enum class ResultKind { file, analyzed, simulated, grown };
 /// Throws Error for anything else.
 ResultKind kind_of(const std::filesystem::path&);
 
-/// The cell of a grown terrain's elevation.tif at which its water leaves, as the folder's summary says: the rim is a
-/// divide, not a cut. Throws Error where the folder does not say it.
+/// The cell of a grown terrain's elevation.tif, on its own or on larger cells, at which its water leaves, as the folder's
+/// summary says: the rim is a divide, not a cut. Throws Error where the folder does not say it.
 Index grown_outlet(const std::filesystem::path& folder, const Raster&);
 
 /// Throws Error if anything is asked for that only holds while a DEM is read and measured: the folder was measured

@@ -39,23 +39,6 @@ Experiment grown_experiment(const Experiment& study, const GrowthFit& fit, const
     return e;
 }
 
-/// The cell with data whose centre is nearest to the outlet.
-Index outlet_cell(const Raster& raster, const GrowthSite& site) {
-    const Point outlet{site.basin.outlet.x / site.unit_m, site.basin.outlet.y / site.unit_m};
-    Index nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (Index cell = 0; cell < raster.grid.size(); ++cell) {
-        if (std::isnan(raster.values[cell])) continue;
-        const Point center = raster.placement.center(raster.grid.row(cell), raster.grid.col(cell));
-        const double distance = std::hypot(center.x - outlet.x, center.y - outlet.y);
-        if (distance < least) {
-            nearest = cell;
-            least = distance;
-        }
-    }
-    return nearest;
-}
-
 }  // namespace
 
 void run_growth_steps(const Experiment& e, const Catchment& catchment, const MeasureOptions& options,
@@ -70,7 +53,9 @@ void run_growth_steps(const Experiment& e, const Catchment& catchment, const Mea
 
     const NamedRaster grown = read_dem(study / "grow/elevation.tif", {}, {});
     MeasureOptions measuring = options;
-    measuring.catchment_outlet = outlet_cell(grown.raster, fit.site);
+    const Point& outlet = fit.site.basin.outlet;
+    measuring.catchment_outlet =
+        nearest_cell_with_data(grown.raster, {outlet.x / fit.site.unit_m, outlet.y / fit.site.unit_m});
     analyze(grown, measuring, step_folder(study, "grown"), messages);
     compare(study / "basin", study / "grown", {}, step_folder(study, "compare_grown"), messages);
 }

@@ -36,4 +36,8 @@ struct Raster {
 /// from the raster's by whole turns.
 Index cell_at(const Raster&, Point);
 
+/// The cell with data whose centre lies nearest to a point of the raster's coordinates, the first of those as near; `none`
+/// where no cell has any.
+Index nearest_cell_with_data(const Raster&, Point);
+
 }  // namespace thalweg

@@ -45,6 +45,12 @@ struct ReadResult {
 /// or column, too many cells, a CRS that is neither geographic nor projected, truncated data.
 ReadResult read_raster(const std::filesystem::path&, const ReadOptions& = {});
 
+/// The raster on cells about `times` (from 1 on) as wide and as high: as many whole ones as come nearest to that, at least
+/// two each way, over the very same ground. Heights are means of the cells beneath, or bilinear below 1.9 times, by
+/// GDAL's warper without any change of coordinates; no data where less than half of a cell's ground has any. The grid's
+/// measures are those of the new cells, on degrees ellipsoidal. Throws Error where nothing has data then.
+Raster on_larger_cells(const Raster&, double times);
+
 enum class CellType { float64, uint8, int32 };
 
 enum class Layout {

@@ -28,7 +28,7 @@ struct Nature {
     std::span<const double> gradient;   ///< rise over run
     std::span<const double> water;      ///< 0 land – 1 water; empty: none
     std::optional<double> tree_line_m;  ///< default: at two thirds of the relief
-    std::optional<double> snow_line_m;  ///< default: at 85 % of the relief where that is above 800 m, else no snow
+    std::optional<double> snow_line_m;  ///< default: at 85 % of the relief, but not below 3000 m
 };
 
 /// The colouring by elevation, location and gradient of Kelley, Malin & Nielson (1988, §5): water along channels,

@@ -8,14 +8,23 @@
 
 namespace thalweg::study {
 
+/// On which cells two rasters are measured whose cells differ in size.
+enum class CompareCells {
+    common,  ///< the finer one is brought to the size of the coarser one's
+    own      ///< each on those it has
+};
+
 struct CompareOptions {
     io::ReadOptions read;
     MeasureOptions measure;
+    CompareCells cells = CompareCells::common;
 };
 
-/// Compares two terrains, each a DEM or the folder of an analyze or simulate run (whose elevation.tif is measured like
-/// any DEM), with the same channel threshold on both sides, and writes comparison.json, both sides' curves in it, into
-/// an existing folder. Returns the text of comparison.json.
+/// Compares two terrains, each a DEM or the folder of an analyze, simulate or grow run (of the last two elevation.tif
+/// is measured like any DEM), with the same channel threshold and on cells of one size on both sides, and writes
+/// comparison.json, both sides' curves in it, into an existing folder. Cells are of one size where the square roots of
+/// their mean areas differ by at most 5 %. What an analyze folder measured cannot be brought to other cells: a warning
+/// tells. Returns the text of comparison.json.
 std::string compare(const std::filesystem::path& a, const std::filesystem::path& b, const CompareOptions&,
                     const std::filesystem::path& folder, const Messages&);
 
