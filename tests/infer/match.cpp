@@ -39,7 +39,7 @@ std::vector<double> bent(std::span<const double> p, std::uint64_t seed) {
 
 TEST_CASE("A linear model with normal noise gives the estimate that theory gives") {
     // Prior: uniform on [0, 12], variance 12; noise 2: the estimate is (s/4 + 6/12)/(1/4 + 1/12), its variance 3.
-    const MatchOptions options{.ranges = {{0, 12}, {0, 12}}, .rounds = 4, .draws = 20000, .seed = 3};
+    const MatchOptions options{.ranges = {{0, 12}, {0, 12}}, .most_rounds = 4, .draws = 20000, .seed = 3};
     const std::vector<double> target{4, 9};
     const Match found = match(noisy_copy(2), target, options);
     for (std::size_t i = 0; i < 2; ++i) {
@@ -48,26 +48,67 @@ TEST_CASE("A linear model with normal noise gives the estimate that theory gives
     }
 }
 
-TEST_CASE("What the last round moved tells whether more rounds would change the estimate") {
-    const auto rounds = [](Index count, Index draws) {
+TEST_CASE("Rounds go on until two have moved nothing, and then more would not change the estimate") {
+    const auto rounds = [](Index most, Index draws) {
         return match(bent, std::vector<double>{2.5, 3},
-                     {.ranges = {{-2, 2}, {-3, 3}}, .rounds = count, .draws = draws, .seed = 5});
+                     {.ranges = {{-2, 2}, {-3, 3}}, .most_rounds = most, .draws = draws, .seed = 5});
     };
-    const Match one = rounds(1, 300), two = rounds(2, 300), five = rounds(5, 300);
+    const Match one = rounds(1, 300), two = rounds(2, 300), enough = rounds(20, 300);
     CHECK(one.rounds == 1);
-    CHECK(five.rounds == 5);
-    double moved = 0;  // by the second round, in its errors
+    CHECK_FALSE(one.has_settled);
+    CHECK(one.last_step > 2);  // from the middle of the ranges
+    double moved = 0;          // by the second round, in its errors
     for (std::size_t i = 0; i < 2; ++i) {
         moved = std::max(
             moved, std::abs(two.parameters[i].value - one.parameters[i].value) / two.parameters[i].standard_error);
     }
     CHECK(two.last_step == Approx(moved));
-    CHECK(one.last_step > 2);  // from the middle of the ranges
-    CHECK(five.last_step < 0.5);
+    CHECK(enough.has_settled);
+    CHECK(enough.rounds < 20);
+    CHECK(enough.last_step < 0.3);
+    const Match many = rounds(20, 20000);
+    for (std::size_t i = 0; i < 2; ++i) {
+        CHECK(std::abs(many.parameters[i].value - enough.parameters[i].value) < many.parameters[i].standard_error / 2);
+    }
     const Match nothing = match(bent, std::vector<double>{std::nan(""), std::nan("")},
-                                {.ranges = {{-2, 2}, {-3, 3}}, .rounds = 3, .draws = 100, .seed = 5});
+                                {.ranges = {{-2, 2}, {-3, 3}}, .draws = 100, .seed = 5});
     CHECK(nothing.rounds == 0);
-    CHECK_FALSE(nothing.last_step <= 1);
+    CHECK_FALSE(nothing.has_settled);
+}
+
+namespace {
+
+/// Three statistics of one parameter, which a target need not agree on.
+std::vector<double> three_copies(std::span<const double> p, std::uint64_t seed) {
+    Random random(seed, 15);
+    return {p[0] + 0.1 * random.normal(), p[0] + 0.1 * random.normal(), p[0] + 0.1 * random.normal()};
+}
+
+}  // namespace
+
+TEST_CASE("Where a model cannot make such statistics, the errors widen by the root of how far off they are") {
+    const MatchOptions options{.ranges = {{-50, 50}}, .draws = 4000, .seed = 2};
+    const Match agreed = match(three_copies, std::vector<double>{0.4, 0.5, 0.6}, options);
+    CHECK(agreed.parameters[0].value == Approx(0.5).margin(0.01));
+    CHECK(agreed.parameters[0].standard_error == Approx(0.1 / std::sqrt(3.0)).epsilon(0.05));
+    CHECK(agreed.reduced_chi2 == Approx(1).epsilon(0.1));  // (1 + 0 + 1)/2
+    // Mean 1, squares 100 times larger: χ²/ν = (10² + 0 + 10²)/2.
+    const Match apart = match(three_copies, std::vector<double>{0, 1, 2}, options);
+    CHECK(apart.parameters[0].value == Approx(1).margin(0.01));
+    CHECK(apart.reduced_chi2 == Approx(100).epsilon(0.1));
+    CHECK(apart.parameters[0].standard_error == Approx(1 / std::sqrt(3.0)).epsilon(0.05));
+}
+
+TEST_CASE("On average what is left is as large as chance makes it, and never widens what is known") {
+    double sum = 0;
+    constexpr int trials = 200;
+    for (std::uint64_t seed = 1; seed <= trials; ++seed) {
+        const Match found = match(three_copies, three_copies(std::vector<double>{0.3}, 9000 + seed),
+                                  {.ranges = {{0, 1}}, .draws = 100, .seed = 100 * seed});
+        sum += found.reduced_chi2;
+        CHECK(found.parameters[0].standard_error > 0.045);
+    }
+    CHECK(sum / trials == Approx(1).margin(0.25));  // each has a standard deviation of about 1
 }
 
 TEST_CASE("A parameter that changes nothing stays in the middle of its range, with an error as wide") {
@@ -76,7 +117,7 @@ TEST_CASE("A parameter that changes nothing stays in the middle of its range, wi
         return std::vector<double>{p[0] + 0.01 * random.normal()};
     };
     const Match found =
-        match(model, std::vector<double>{0.3}, {.ranges = {{0, 1}, {2, 4}}, .rounds = 4, .draws = 300, .seed = 1});
+        match(model, std::vector<double>{0.3}, {.ranges = {{0, 1}, {2, 4}}, .most_rounds = 4, .draws = 300, .seed = 1});
     CHECK(found.parameters[0].value == Approx(0.3).margin(0.005));
     CHECK(found.parameters[1].value == Approx(3).margin(0.1));
     CHECK(found.parameters[1].standard_error == Approx(2 / std::sqrt(12.0)).epsilon(0.05));
@@ -91,7 +132,7 @@ TEST_CASE("The intervals of a bent model cover the truth as often as they say") 
         const std::vector<double> truth{-0.8 + 1.6 * random.uniform(), 0.2 + 0.6 * random.uniform()};
         const auto target = bent(truth, 5000 + seed);
         const Match found =
-            match(bent, target, {.ranges = {{-1, 1}, {0, 1}}, .rounds = 4, .draws = 100, .seed = 77 * seed});
+            match(bent, target, {.ranges = {{-1, 1}, {0, 1}}, .most_rounds = 4, .draws = 100, .seed = 77 * seed});
         for (std::size_t i = 0; i < 2; ++i, ++all) {
             covered += found.parameters[i].interval95[0] <= truth[i] && truth[i] <= found.parameters[i].interval95[1];
         }
@@ -101,7 +142,7 @@ TEST_CASE("The intervals of a bent model cover the truth as often as they say") 
 }
 
 TEST_CASE("Estimates stay in their ranges, and statistics that were not measured are left out") {
-    const MatchOptions options{.ranges = {{0, 1}, {0, 1}}, .rounds = 3, .draws = 200, .seed = 1};
+    const MatchOptions options{.ranges = {{0, 1}, {0, 1}}, .most_rounds = 3, .draws = 200, .seed = 1};
     const Match beyond = match(noisy_copy(0.01), std::vector<double>{1.7, unknown}, options);
     CHECK(beyond.parameters[0].value == Approx(1).margin(1e-12));
     CHECK(beyond.parameters[0].interval95[1] <= 1);
@@ -118,7 +159,7 @@ TEST_CASE("Statistics that repeat each other do no harm") {
         return std::vector<double>{s, 1 - s};
     };
     const Match found =
-        match(model, std::vector<double>{0.4, 0.6}, {.ranges = {{0, 1}}, .rounds = 3, .draws = 400, .seed = 1});
+        match(model, std::vector<double>{0.4, 0.6}, {.ranges = {{0, 1}}, .most_rounds = 3, .draws = 400, .seed = 1});
     CHECK(found.parameters[0].value == Approx(0.4).margin(0.03));
     CHECK(found.parameters[0].standard_error == Approx(0.0945).epsilon(0.15));  // 1/√(100 + 12)
 }
@@ -129,9 +170,9 @@ TEST_CASE("A statistic that outcomes often lack is left out, and too few whole o
         return std::vector<double>{p[0] + 0.1 * random.normal(), seed % 5 == 0 ? unknown : p[0]};
     };
     const Match found =
-        match(rare, std::vector<double>{0.4, 0.9}, {.ranges = {{0, 1}}, .rounds = 2, .draws = 200, .seed = 1});
+        match(rare, std::vector<double>{0.4, 0.9}, {.ranges = {{0, 1}}, .most_rounds = 2, .draws = 200, .seed = 1});
     CHECK(found.parameters[0].value == Approx(0.4).margin(0.03));
-    CHECK(found.outcomes == 200);
+    CHECK(found.outcomes == 400);  // of both rounds
     const auto later = [](std::span<const double> p, std::uint64_t seed) {
         return std::vector<double>{seed > 300 ? unknown : p[0]};
     };
@@ -139,7 +180,7 @@ TEST_CASE("A statistic that outcomes often lack is left out, and too few whole o
 }
 
 TEST_CASE("A match is the same for any number of threads") {
-    const MatchOptions options{.ranges = {{-1, 1}, {0, 1}}, .rounds = 3, .draws = 100, .seed = 4};
+    const MatchOptions options{.ranges = {{-1, 1}, {0, 1}}, .most_rounds = 3, .draws = 100, .seed = 4};
     const auto with = [&](int threads) {
         const ThreadLimit limit(threads);
         return match(bent, std::vector<double>{1.5, 1.2}, options).parameters;

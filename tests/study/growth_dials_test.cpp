@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/study/growth_dials.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -95,7 +96,7 @@ TEST_CASE("Dials are fitted by the rules that networks are to grow by") {
     const auto measures = grown_measures(basin, truth);
     const DialsFit fit = fit_dials(basin, measures, 1, {.upstream_link = truth.upstream_link});
     CHECK(fit.dials.upstream_link == grow::UpstreamLink::turns);
-    CHECK(fit.rounds == 4);
+    CHECK(fit.converged);
     const auto apart = [](const DialsFit& f) {
         double sum = 0;
         for (const MeasureCheck& c : f.check) {
@@ -115,6 +116,39 @@ TEST_CASE("Fitted dials are the same for any number of threads, and others for a
     };
     CHECK(with(1, 1) == with(3, 1));
     CHECK(with(1, 1) != with(1, 2));
+}
+
+TEST_CASE("Where no dials grow such a network the fit comes to rest, says so and tells the same for any seed") {
+    const grow::Basin basin = support::square_basin(8000);
+    auto measures = grown_measures(basin, drawn_dials(4));
+    for (auto* links : {&measures.links.exterior, &measures.links.interior}) links->mean_m *= 2;
+    const DialsFit one = fit_dials(basin, measures, 1), two = fit_dials(basin, measures, 2);
+    CHECK(one.converged);
+    CHECK(two.converged);
+    CHECK(one.reduced_chi2 > 2);
+    CHECK(one.notes.back().starts_with("no dials grow"));
+    CHECK(one.notes.back().find("interior_length_m") != std::string::npos);
+    const auto first = matched(one.dials), second = matched(two.dials);
+    for (std::size_t i = 0; i < first.size(); ++i) {
+        INFO(one.table[3 + i].name);
+        CHECK(std::abs(first[i] - second[i]) < one.table[3 + i].value.standard_error);
+    }
+}
+
+TEST_CASE("A draw about a gentle sidewall is no wider than the angle leaves room for") {
+    const grow::Basin basin = support::square_basin(8000);
+    auto measures = grown_measures(basin, drawn_dials(4));
+    measures.sidewall_angle_deg.mean.value = 3;
+    measures.sidewall_angle_deg.delta.value = 6;
+    const DialsFit fit = fit_dials(basin, measures, 1);
+    const Estimate& delta = fit.table[8].value;
+    REQUIRE(fit.table[8].name == "delta_sidewall_angle_deg");
+    CHECK(delta.value == fit.dials.delta_sidewall_angle_deg);
+    CHECK(delta.value == Approx(fit.dials.sidewall_angle_deg - 1));
+    CHECK(delta.interval95[1] <= delta.value);
+    CHECK(std::ranges::any_of(fit.notes, [](const std::string& note) {
+        return note.starts_with("delta_sidewall_angle_deg: would be wider");
+    }));
 }
 
 TEST_CASE("What was not measured is left open, and what cannot be grown is said") {

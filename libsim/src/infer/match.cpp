@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/infer/match.hpp"
 
+#include <ceres/ceres.h>
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "infer/quiet_ceres.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/parallel.hpp"
 #include "thalweg/core/random.hpp"
@@ -17,19 +19,23 @@ namespace {
 
 using Matrix = Eigen::MatrixXd;
 using Vector = Eigen::VectorXd;
+using Box = std::vector<std::array<double, 2>>;
 
 constexpr std::uint32_t parameter_draws = 0x6d617463;
-constexpr double errors_about = 3;  // half the next box, in standard errors
+constexpr double settled_step = 0.3;  // standard errors
+constexpr Index rounds_at_rest = 2;   // in a row
+constexpr double errors_about = 3;    // half the next box, in standard errors
 
 /// Mean and covariance of the parameters, taken as normal.
 struct Belief {
     Vector mean;
     Matrix covariance;
+    double reduced_chi2 = std::numeric_limits<double>::quiet_NaN();
 };
 
-Belief uniform_belief(std::span<const std::array<double, 2>> box) {
+Belief uniform_belief(const Box& box) {
     const auto size = static_cast<Eigen::Index>(box.size());
-    Belief belief{Vector(size), Matrix::Zero(size, size)};
+    Belief belief{.mean = Vector(size), .covariance = Matrix::Zero(size, size)};
     for (Eigen::Index i = 0; i < size; ++i) {
         const auto& [low, high] = box[static_cast<std::size_t>(i)];
         belief.mean[i] = (low + high) / 2;
@@ -38,13 +44,12 @@ Belief uniform_belief(std::span<const std::array<double, 2>> box) {
     return belief;
 }
 
-/// What came of one round: a row for each outcome.
-struct Round {
+/// A row for each outcome of the model.
+struct Outcomes {
     Matrix parameters, statistics;
 };
 
-Round draw_round(const RandomModel& model, const MatchOptions& options, std::span<const std::array<double, 2>> box,
-                 Index round) {
+Outcomes draw_round(const RandomModel& model, const MatchOptions& options, const Box& box, Index round) {
     std::vector<std::vector<double>> parameters(options.draws), statistics(options.draws);
     const auto draw_one = [&](Index draw) {
         const std::uint64_t number = std::uint64_t{round} * options.draws + draw;
@@ -60,8 +65,8 @@ Round draw_round(const RandomModel& model, const MatchOptions& options, std::spa
             for (Index draw = first; draw < last; ++draw) draw_one(draw);
         },
         1);
-    Round drawn{Matrix(options.draws, static_cast<Eigen::Index>(box.size())),
-                Matrix(options.draws, static_cast<Eigen::Index>(statistics.front().size()))};
+    Outcomes drawn{Matrix(options.draws, static_cast<Eigen::Index>(box.size())),
+                   Matrix(options.draws, static_cast<Eigen::Index>(statistics.front().size()))};
     for (Index draw = 0; draw < options.draws; ++draw) {
         drawn.parameters.row(draw) = Eigen::Map<const Vector>(parameters[draw].data(), drawn.parameters.cols());
         drawn.statistics.row(draw) = Eigen::Map<const Vector>(statistics[draw].data(), drawn.statistics.cols());
@@ -70,7 +75,7 @@ Round draw_round(const RandomModel& model, const MatchOptions& options, std::spa
 }
 
 /// The statistics that have a target and that most outcomes have.
-std::vector<Eigen::Index> statistics_in_use(const Round& drawn, std::span<const double> target) {
+std::vector<Eigen::Index> statistics_in_use(const Outcomes& drawn, std::span<const double> target) {
     constexpr double most = 0.9;
     std::vector<Eigen::Index> used;
     for (Eigen::Index k = 0; k < drawn.statistics.cols(); ++k) {
@@ -81,28 +86,54 @@ std::vector<Eigen::Index> statistics_in_use(const Round& drawn, std::span<const 
     return used;
 }
 
-/// The outcomes that have all statistics in use, and those alone.
-Round whole_outcomes(const Round& drawn, const std::vector<Eigen::Index>& used) {
+/// Adds the outcomes that have all statistics in use, and those alone.
+void add_whole(const Outcomes& drawn, const std::vector<Eigen::Index>& used, Outcomes& all) {
     std::vector<Eigen::Index> rows;
     for (Eigen::Index row = 0; row < drawn.statistics.rows(); ++row) {
         if (!drawn.statistics(row, used).hasNaN()) rows.push_back(row);
     }
-    return {drawn.parameters(rows, Eigen::all), drawn.statistics(rows, used)};
+    const Eigen::Index before = all.parameters.rows(), more = static_cast<Eigen::Index>(rows.size());
+    all.parameters.conservativeResize(before + more, drawn.parameters.cols());
+    all.statistics.conservativeResize(before + more, static_cast<Eigen::Index>(used.size()));
+    all.parameters.bottomRows(more) = drawn.parameters(rows, Eigen::all);
+    all.statistics.bottomRows(more) = drawn.statistics(rows, used);
+}
+
+/// Of all rounds: given its parameters, an outcome does not depend on what they were drawn from.
+Outcomes within(const Box& box, const Outcomes& all) {
+    std::vector<Eigen::Index> rows;
+    for (Eigen::Index row = 0; row < all.parameters.rows(); ++row) {
+        bool is_inside = true;
+        for (std::size_t i = 0; i < box.size() && is_inside; ++i) {
+            const double value = all.parameters(row, static_cast<Eigen::Index>(i));
+            is_inside = box[i][0] <= value && value <= box[i][1];
+        }
+        if (is_inside) rows.push_back(row);
+    }
+    return {all.parameters(rows, Eigen::all), all.statistics(rows, Eigen::all)};
 }
 
 /// Expected statistics near the middle of a box: a constant, slopes and products of the parameters.
 class Response {
   public:
-    explicit Response(const Round& round) : middle_(round.parameters.colwise().mean()) {
-        const auto rows = round.parameters.rows();
+    explicit Response(const Outcomes& outcomes) : middle_(outcomes.parameters.colwise().mean()) {
+        const auto rows = outcomes.parameters.rows();
         Matrix design(rows, terms());
-        for (Eigen::Index row = 0; row < rows; ++row) design.row(row) = terms_at(round.parameters.row(row));
-        coefficients_ = design.colPivHouseholderQr().solve(round.statistics);
-        const Matrix residuals = round.statistics - design * coefficients_;
+        for (Eigen::Index row = 0; row < rows; ++row) design.row(row) = terms_at(outcomes.parameters.row(row));
+        coefficients_ = design.colPivHouseholderQr().solve(outcomes.statistics);
+        const Matrix residuals = outcomes.statistics - design * coefficients_;
         scatter_ = residuals.transpose() * residuals / static_cast<double>(rows - terms());
+        terms_covariance_ = (design.transpose() * design).completeOrthogonalDecomposition().pseudoInverse();
     }
 
+    /// Of single outcomes about their mean.
     const Matrix& scatter() const { return scatter_; }
+
+    /// How far the mean itself may be off, for it comes from so many outcomes only: its variance over the scatter's.
+    double uncertainty_at(const Vector& parameters) const {
+        const Vector terms = terms_at(parameters);
+        return terms.dot(terms_covariance_ * terms);
+    }
 
     Vector at(const Vector& parameters) const { return coefficients_.transpose() * terms_at(parameters); }
 
@@ -138,42 +169,111 @@ class Response {
     }
 
     Vector middle_;
-    Matrix coefficients_, scatter_;
+    Matrix coefficients_, scatter_, terms_covariance_;
 };
 
-void check_enough(const Round& round, Index draws) {
-    const auto needed = 3 * Response::terms(round.parameters.cols()) / 2;
-    if (round.parameters.rows() >= needed) return;
+void check_enough(const Outcomes& outcomes, Index draws) {
+    const auto needed = 3 * Response::terms(outcomes.parameters.cols()) / 2;
+    if (outcomes.parameters.rows() >= needed) return;
     throw Error(
         fmt::format("only {} of {} outcomes of the model have all the statistics that were measured, and {} are needed",
-                    round.parameters.rows(), draws, needed));
+                    outcomes.parameters.rows(), draws, needed));
 }
 
-void keep_in(std::span<const std::array<double, 2>> box, Vector& parameters) {
+/// Rows W with WᵀW the inverse of a covariance; statistics may hang together (two shares that add up): what is doubled
+/// is passed over.
+Matrix whitener(const Matrix& covariance) {
+    constexpr double same = 1e-9;
+    const Vector scale = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt().cwiseInverse();
+    const Matrix correlation = scale.asDiagonal() * covariance * scale.asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<Matrix> parts(correlation);
+    std::vector<Eigen::Index> kept;
+    for (Eigen::Index i = 0; i < parts.eigenvalues().size(); ++i) {
+        if (parts.eigenvalues()[i] > same) kept.push_back(i);
+    }
+    const Vector sizes = parts.eigenvalues()(kept).cwiseSqrt().cwiseInverse();
+    return sizes.asDiagonal() * parts.eigenvectors()(Eigen::all, kept).transpose() * scale.asDiagonal();
+}
+
+/// Residuals of the statistics, and of the parameters against what is thought of them beforehand.
+class Distance : public ceres::CostFunction {
+  public:
+    Distance(const Belief& before, const Response& response, const Vector& target, const Matrix& whitening)
+        : before_(before),
+          response_(response),
+          target_(target),
+          whitening_(whitening),
+          looseness_(before.covariance.diagonal().cwiseSqrt().cwiseInverse()) {
+        set_num_residuals(static_cast<int>(whitening.rows() + before.mean.size()));
+        mutable_parameter_block_sizes()->push_back(static_cast<int>(before.mean.size()));
+    }
+
+    bool Evaluate(double const* const* parameters, double* residuals, double** jacobians) const override {
+        const auto size = before_.mean.size();
+        const Vector at = Eigen::Map<const Vector>(parameters[0], size);
+        Eigen::Map<Vector> all(residuals, num_residuals());
+        all.head(whitening_.rows()) = whitening_ * (target_ - response_.at(at));
+        all.tail(size) = looseness_.cwiseProduct(before_.mean - at);
+        if (jacobians == nullptr || jacobians[0] == nullptr) return true;
+        Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>> slopes(
+            jacobians[0], num_residuals(), size);
+        slopes.topRows(whitening_.rows()) = -whitening_ * response_.slopes_at(at);
+        slopes.bottomRows(size) = -Matrix(looseness_.asDiagonal());
+        return true;
+    }
+
+  private:
+    const Belief& before_;
+    const Response& response_;
+    const Vector& target_;
+    const Matrix& whitening_;
+    Vector looseness_;
+};
+
+/// The parameters of least distance within a box.
+Vector nearest(const Belief& before, const Response& response, const Vector& target, const Box& box, Vector start) {
+    const Matrix whitening = whitener(response.scatter());
+    ceres::Problem problem;
+    problem.AddResidualBlock(new Distance(before, response, target, whitening), nullptr, start.data());
     for (std::size_t i = 0; i < box.size(); ++i) {
-        double& value = parameters[static_cast<Eigen::Index>(i)];
-        value = std::clamp(value, box[i][0], box[i][1]);
+        const auto at = static_cast<int>(i);
+        start[at] = std::clamp(start[at], box[i][0], box[i][1]);
+        problem.SetParameterLowerBound(start.data(), at, box[i][0]);
+        problem.SetParameterUpperBound(start.data(), at, box[i][1]);
     }
+    ceres::Solver::Options settings;
+    settings.linear_solver_type = ceres::DENSE_QR;
+    settings.num_threads = 1;
+    settings.logging_type = ceres::SILENT;
+    settings.max_num_iterations = 200;
+    settings.function_tolerance = 1e-12;
+    settings.parameter_tolerance = 1e-10;
+    ceres::Solver::Summary summary;
+    keep_ceres_quiet();
+    ceres::Solve(settings, &problem, &summary);
+    return start;
 }
 
-/// Gauss–Newton steps, within the box that the response is known over.
-Belief updated(const Belief& before, const Response& response, const Vector& target,
-               std::span<const std::array<double, 2>> box) {
-    constexpr int steps = 20;
-    Vector at = before.mean;
-    keep_in(box, at);
-    Matrix gain, slopes;
-    for (int step = 0; step < steps; ++step) {
-        slopes = response.slopes_at(at);
-        // Statistics may hang together (two shares that add up): the decomposition passes over what is doubled.
-        gain = before.covariance * slopes.transpose() *
-               (slopes * before.covariance * slopes.transpose() + response.scatter())
-                   .completeOrthogonalDecomposition()
-                   .pseudoInverse();
-        at = before.mean + gain * (target - response.at(at) + slopes * (at - before.mean));
-        keep_in(box, at);
+/// Covariance (RᵀΣ⁻¹R + V⁻¹)⁻¹, Σ what an outcome and its mean scatter, times χ²/ν where the statistics lie farther off
+/// than that: ν their number less those that the parameters take up.
+Belief believed(Vector at, const Belief& before, const Response& response, const Vector& target) {
+    constexpr int most_turns = 100;
+    const Matrix whitening = whitener((1 + response.uncertainty_at(at)) * response.scatter());
+    const Matrix slopes = whitening * response.slopes_at(at);
+    const Matrix information = slopes.transpose() * slopes;
+    const Matrix inverse_before = before.covariance.inverse();
+    const double chi2 = (whitening * (target - response.at(at))).squaredNorm();
+    Belief after{.mean = std::move(at), .covariance = {}};
+    double excess = 1;
+    for (int turn = 0; turn < most_turns; ++turn) {
+        after.covariance = (information / excess + inverse_before).inverse();
+        const double taken_up = (information * after.covariance).trace() / excess;
+        after.reduced_chi2 = chi2 / (static_cast<double>(whitening.rows()) - taken_up);
+        const double next = std::max(1.0, after.reduced_chi2);
+        if (std::abs(next - excess) < 1e-6 * excess) break;
+        excess = next;
     }
-    return {at, before.covariance - gain * slopes * before.covariance};
+    return after;
 }
 
 double error_of(const Belief& belief, Eigen::Index i) { return std::sqrt(std::max(0.0, belief.covariance(i, i))); }
@@ -188,8 +288,8 @@ double largest_step(const Vector& mean_before, const Belief& after) {
     return largest;
 }
 
-std::vector<std::array<double, 2>> box_about(const Belief& belief, std::span<const std::array<double, 2>> ranges) {
-    std::vector<std::array<double, 2>> box;
+Box box_about(const Belief& belief, const Box& ranges) {
+    Box box;
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const auto& [low, high] = ranges[i];
         const auto at = static_cast<Eigen::Index>(i);
@@ -200,8 +300,8 @@ std::vector<std::array<double, 2>> box_about(const Belief& belief, std::span<con
     return box;
 }
 
-Match result_of(const Belief& after, const Belief& before, std::span<const std::array<double, 2>> ranges) {
-    Match match{{}, {}, 0, 0, 0};
+Match result_of(const Belief& after, const Belief& before, const Box& ranges) {
+    Match match{.parameters = {}, .identified = {}};
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const auto& [low, high] = ranges[i];
         const auto at = static_cast<Eigen::Index>(i);
@@ -216,30 +316,38 @@ Match result_of(const Belief& after, const Belief& before, std::span<const std::
 }  // namespace
 
 Match match(const RandomModel& model, std::span<const double> target, const MatchOptions& options) {
-    const Vector measured = Eigen::Map<const Vector>(target.data(), static_cast<Eigen::Index>(target.size()));
     const Belief before = uniform_belief(options.ranges);
     Belief belief = before;
-    std::vector<std::array<double, 2>> box = options.ranges;
+    Box box = options.ranges;
     std::vector<Eigen::Index> used;
-    Index outcomes = 0, rounds = 0;
+    Outcomes all;
+    Vector measured;
+    Index rounds = 0, at_rest = 0;
     double last_step = std::numeric_limits<double>::infinity();
-    for (Index round = 0; round < options.rounds; ++round) {
-        const Round all = draw_round(model, options, box, round);
-        if (round == 0) used = statistics_in_use(all, target);
-        if (used.empty()) break;
-        const Round drawn = whole_outcomes(all, used);
-        check_enough(drawn, options.draws);
+    while (rounds < options.most_rounds && at_rest < rounds_at_rest) {
+        const Outcomes drawn = draw_round(model, options, box, rounds);
+        if (rounds == 0) {
+            used = statistics_in_use(drawn, target);
+            if (used.empty()) break;
+            measured = Eigen::Map<const Vector>(target.data(), static_cast<Eigen::Index>(target.size()))(used);
+        }
+        add_whole(drawn, used, all);
+        const Outcomes near = within(box, all);
+        check_enough(near, options.draws);
+        const Response response(near);
         const Vector mean_before = belief.mean;
-        belief = updated(before, Response(drawn), measured(used), box);
+        belief = believed(nearest(before, response, measured, box, belief.mean), before, response, measured);
         last_step = largest_step(mean_before, belief);
+        at_rest = last_step <= settled_step ? at_rest + 1 : 0;
         ++rounds;
         box = box_about(belief, options.ranges);
-        outcomes = static_cast<Index>(drawn.parameters.rows());
     }
     Match result = result_of(belief, before, options.ranges);
-    result.outcomes = outcomes;
+    result.outcomes = static_cast<Index>(all.parameters.rows());
     result.rounds = rounds;
     result.last_step = last_step;
+    result.has_settled = at_rest == rounds_at_rest;
+    result.reduced_chi2 = belief.reduced_chi2;
     return result;
 }
 

@@ -3,12 +3,12 @@
 
 #include <ceres/ceres.h>
 #include <fmt/format.h>
-#include <glog/logging.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "infer/quiet_ceres.hpp"
 #include "thalweg/core/error.hpp"
 
 namespace thalweg::infer {
@@ -131,9 +131,6 @@ void build(ceres::Problem& problem, const Target& target, const SlopeAreaFitOpti
     }
     if (options.theta_fixed) problem.SetParameterBlockConstant(&at.m);
 }
-
-/// Ceres speaks through glog even when it is told to be silent; what matters reaches the user as an Error.
-void keep_ceres_quiet() { FLAGS_minloglevel = google::FATAL; }
 
 /// One solution with a given width of the loss, starting from `at`.
 void solve(const Target& target, const SlopeAreaFitOptions& options, Solution& at) {

@@ -109,7 +109,7 @@ Json check_json(const DialsFit& fit) {
 void add_unknown(Json& json, std::vector<std::string>& notes) {
     for (const char* key : {"n", "uplift_m_per_yr", "uplift_sd_m_per_yr", "k", "k_se", "k_ci95", "reference_area_m2",
                             "k_at_reference_area", "k_at_reference_area_se", "m", "m_se", "m_ci95", "area_range_m2",
-                            "steady_check", "theta", "theta_se", "ks", "correlation_log_k_m", "reduced_chi2"}) {
+                            "steady_check", "theta", "theta_se", "ks", "correlation_log_k_m"}) {
         json[key] = nullptr;
     }
     json["k_unit"] = "";
@@ -125,8 +125,9 @@ std::string fit_json(const GrowthFit& fit, const std::string& measured_on) {
     }
     Json json{{"method", "growth"}, {"measured_on", measured_on}};
     add_unknown(json, notes);
+    json["reduced_chi2"] = number(fit.dials.reduced_chi2);
     json["iterations"] = fit.dials.rounds;
-    json["converged"] = fit.dials.converged();
+    json["converged"] = fit.dials.converged;
     json["message"] = fmt::format(
         "dials found by growing networks in the basin and regressing what they measure; the last of {} rounds moved "
         "the "
@@ -298,10 +299,11 @@ std::string fit_growth(const fs::path& path, const GrowthFitOptions& options, co
     GrowthFit fit = fit_growth(catchment, target.measure, options.seed);
     fit.notes.insert(fit.notes.end(), dem.warnings.begin(), dem.warnings.end());
     for (const std::string& warning : fit.site.warnings) messages.warning(warning);
-    if (!fit.dials.converged()) {
-        fit.notes.push_back(fmt::format("the dials did not come to rest: the last round moved one by {:.2g} standard "
-                                        "errors, so the intervals are too narrow; another --seed shows how far",
-                                        fit.dials.last_step));
+    if (!fit.dials.converged) {
+        fit.notes.push_back(
+            fmt::format("the dials did not come to rest in {} rounds: the last moved one by {:.2g} standard errors; "
+                        "another --seed shows how far they differ",
+                        fit.dials.rounds, fit.dials.last_step));
         messages.warning(fit.notes.back());
     }
     return write_growth_fit(fit, target.measured_on, folder);

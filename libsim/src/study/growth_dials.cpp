@@ -64,7 +64,7 @@ std::vector<MatchedDial> matched_dials(const channel::GrowthMeasures& m) {
          measured[4]},
         {"delta_sidewall_angle_deg",
          &Dials::delta_sidewall_angle_deg,
-         {0, std::min(30.0, angle)},
+         {0, std::clamp(2 * angle, 1.0, 30.0)},
          "valley sides",
          m.sidewall_angle_deg.count,
          measured[5]},
@@ -206,6 +206,50 @@ std::vector<MeasureCheck> check_by_growing(const grow::Basin& basin, const grow:
     return check;
 }
 
+/// A range of draws that the mean leaves no room for is cut to what can be drawn.
+void cut_to_room(const grow::Dials& dials, FittedDial& delta) {
+    const double most = dials.delta_sidewall_angle_deg;
+    delta.value.value = most;
+    for (double& end : delta.value.interval95) end = std::min(end, most);
+}
+
+void take_matched(const infer::Match& found, const std::vector<MatchedDial>& matched, DialsFit& fit) {
+    std::vector<double> values;
+    for (const Estimate& e : found.parameters) values.push_back(e.value);
+    fit.dials = with(fit.dials, matched, values);
+    for (std::size_t i = 0; i < matched.size(); ++i) {
+        const MatchedDial& dial = matched[i];
+        FittedDial fitted{dial.name, found.parameters[i], dial.count, dial.source, found.identified[i] != 0};
+        if (fit.dials.*dial.dial < values[i]) {
+            cut_to_room(fit.dials, fitted);
+            fit.notes.push_back(
+                fmt::format("{}: would be wider, but angles are at least {} degree", dial.name, smallest_angle_deg));
+        }
+        if (!fitted.identified) fit.notes.push_back(fmt::format("{}: the network says little about it", dial.name));
+        fit.table.push_back(std::move(fitted));
+    }
+}
+
+/// The measures that what grows has not, farthest first.
+std::string unmet(const DialsFit& fit) {
+    constexpr double far = 3;  // standard deviations
+    std::vector<std::pair<double, std::string>> measures;
+    for (const MeasureCheck& c : fit.check) {
+        const double apart = std::abs(c.measured - c.grown_mean) / c.grown_sd;
+        if (apart > far && std::abs(c.measured - c.grown_mean) > 0.01 * std::abs(c.measured)) {
+            measures.emplace_back(-apart, fmt::format("{} ({:.3g}, grown {:.3g} ± {:.2g})", c.name, c.measured,
+                                                      c.grown_mean, c.grown_sd));
+        }
+    }
+    std::ranges::sort(measures);
+    std::string list;
+    for (const auto& [apart, text] : measures) list += (list.empty() ? "" : ", ") + text;
+    return fmt::format(
+        "no dials grow networks with all that was measured here: chi2 is {:.2g} times what chance makes, and the "
+        "errors are widened by its root{}{}",
+        fit.reduced_chi2, list.empty() ? "" : "; farthest off: ", list);
+}
+
 }  // namespace
 
 DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, std::uint64_t seed,
@@ -224,7 +268,7 @@ DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, s
                  {"flint_q", m.flint.exponent, links, "slopes of links by magnitude", true}};
     const std::vector<FittedDial> divides = take_divides(m.divides, fit);
     const auto matched = matched_dials(m);
-    infer::MatchOptions options{.ranges = {}, .rounds = 4, .draws = draws_for(links), .seed = seed};
+    infer::MatchOptions options{.ranges = {}, .draws = draws_for(links), .seed = seed};
     for (const MatchedDial& dial : matched) options.ranges.push_back(dial.range);
     const auto model = [&](std::span<const double> values, std::uint64_t number) {
         return telling_measures(grown_measures(basin, with(fit.dials, matched, values), number));
@@ -232,19 +276,13 @@ DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, s
     const infer::Match found = infer::match(model, telling_measures(m), options);
     fit.rounds = found.rounds;
     fit.last_step = found.last_step;
-    std::vector<double> values;
-    for (std::size_t i = 0; i < matched.size(); ++i) {
-        values.push_back(found.parameters[i].value);
-        fit.table.push_back(
-            {matched[i].name, found.parameters[i], matched[i].count, matched[i].source, found.identified[i] != 0});
-        if (!found.identified[i]) {
-            fit.notes.push_back(fmt::format("{}: the network says little about it", matched[i].name));
-        }
-    }
+    fit.converged = found.has_settled;
+    fit.reduced_chi2 = found.reduced_chi2;
+    take_matched(found, matched, fit);
     fit.table.insert(fit.table.end(), divides.begin(), divides.end());
-    fit.dials = with(fit.dials, matched, values);
     fit.dials.seed = seed;
     fit.check = check_by_growing(basin, fit.dials, m, seed + 1000000);
+    if (fit.reduced_chi2 > 2) fit.notes.push_back(unmet(fit));
     return fit;
 }
 

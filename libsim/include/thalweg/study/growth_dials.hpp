@@ -38,9 +38,11 @@ struct DialsFit {
     std::vector<FittedDial> table;
     std::vector<MeasureCheck> check;
     std::vector<std::string> notes;
-    Index rounds = 0;      ///< of growing and regressing
-    double last_step = 0;  ///< as infer::Match::last_step
-    bool converged() const { return last_step <= 1; }
+    // As in infer::Match:
+    Index rounds = 0;
+    double last_step = 0;
+    bool converged = false;
+    double reduced_chi2 = 0;
 };
 
 /// Dials with which networks grow in a basin that measure like the one that was measured. C, Flint's law and
