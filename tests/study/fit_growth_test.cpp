@@ -59,9 +59,10 @@ TEST_CASE("A fit of growth writes a basin and dials that read back as they were 
     // C is the basin's area over D8's lengths, which are 5.5 % too long.
     const auto& c = fit["growth"]["channel_maintenance_m"];
     CHECK(area / grow::total_length(grown.network) == Approx(c["estimate"].get<double>()).epsilon(0.02));
-    for (const char* key : {"k", "m", "theta", "ks", "reduced_chi2"}) CHECK(fit[key].is_null());
-    CHECK(fit["iterations"] == 4);
-    CHECK(fit["converged"].is_boolean());
+    for (const char* key : {"k", "m", "theta", "ks"}) CHECK(fit[key].is_null());
+    CHECK(fit["reduced_chi2"].get<double>() > 0);
+    CHECK(fit["iterations"] > 2);
+    CHECK(fit["converged"] == true);
     CHECK(dials.divides == grow::Divides::shares);
     CHECK(dials.divide_above.mean == estimate("divide_above"));
     CHECK(dials.divide_across.delta == estimate("delta_divide_across"));
