@@ -180,6 +180,10 @@ TEST_CASE("The summary and one line say how the DEM came", "[survey]") {
     CHECK(ingest["vertical_quantum_m"] == 0.5);
     CHECK(ingest["cut_basins"].get<int>() >= 2);  // the two flanks, at least
     REQUIRE(lines.size() == 1);
-    CHECK(lines[0].find("drawn.tif: no coordinate system, 8 x 8 cells of 10 x 10 m, -100.0 to 25.0 m high in steps of "
-                        "0.5 m") == 0);
+    CHECK(lines[0].find("drawn.tif: no coordinate system, 8 rows x 8 columns of cells of 10 m north-south x 10 m "
+                        "east-west, heights from -100.0 to 25.0 m in steps of 0.5 m") == 0);
+    dem.raster = raster_of(support::terrain_of(
+        "oblong", 5, 7, [](Index r, Index c) { return r + 0.1 * c; }, 30, 20));
+    analyze(dem, options, temp / "", messages);
+    CHECK(lines[1].find("5 rows x 7 columns of cells of 20 m north-south x 30 m east-west") != std::string::npos);
 }

@@ -304,8 +304,8 @@ def _caveats(content):
                       "<i>k</i>, with the same slopes. Another <i>n</i> would change <i>k</i> and <i>m</i> both.")
     area = content.get("reference_area_m2")
     if area is not None:
-        points.append(f"Compare <i>k</i> <i>A</i><sub>0</sub><sup><i>m</i></sup> at the reference area "
-                      f"<i>A</i><sub>0</sub> = {number(area / 1e6)} km² rather than <i>k</i>: log <i>k</i> and <i>m</i> are "
+        points.append(f"Compare with other fits <i>k</i> <i>A</i><sup><i>m</i></sup> at one area, near the reference area "
+                      f"<i>A</i><sub>0</sub> = {number(area / 1e6)} km², rather than <i>k</i>: log <i>k</i> and <i>m</i> are "
                       f"correlated at {show(content.get('correlation_log_k_m'))}.")
     bend, error = get(content, "steady_check.curvature"), get(content, "steady_check.curvature_se")
     if bend is not None and error is not None:
@@ -436,7 +436,8 @@ def provenance(study):
                ("Please cite", "citation"))) if found]
     grid = [get(study.measure, f"input.{key}") for key in ("rows", "cols", "dx_m", "dy_m")]
     if None not in grid:
-        rows.append(["Grid", f"{grid[0]} × {grid[1]} cells of {number(grid[2], 4)} × {number(grid[3], 4)} m"])
+        rows.append(["Grid", f"{grid[0]} rows × {grid[1]} columns, cells of {number(grid[3], 4)} m north–south × "
+                             f"{number(grid[2], 4)} m east–west"])
     rows += [[escape(key.replace("_", " ").capitalize()), _value(key, value)] for key, value in study.manifest.items()
              if not key.lower().startswith(UNSHOWN)]
     text = _experiment_text(study)

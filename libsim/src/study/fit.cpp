@@ -205,8 +205,9 @@ std::string fit_line(const infer::SlopeAreaFit& f, const Target& target) {
                            f.ks.value, 2 * f.theta.value);
     }
     const double area = f.reference_area_m2 / 1e6;
-    return fmt::format("{}: m {:.3g}, k*A0^m = {:.3g} m/yr at A0 = {:.3g} km2 (compare this, not k = {:.3g} {})", where,
-                       f.m.value, f.k_at_reference_area.value, area, f.k->value, f.k_unit);
+    return fmt::format(
+        "{}: m {:.3g}, k*A0^m = {:.3g} m/yr at A0 = {:.3g} km2 (compare k*A^m at one area, not k = {:.3g} {})", where,
+        f.m.value, f.k_at_reference_area.value, area, f.k->value, f.k_unit);
 }
 
 }  // namespace

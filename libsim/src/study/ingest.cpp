@@ -77,11 +77,10 @@ std::string ingest_line(const NamedRaster& dem, const RasterMeasurement& m) {
     const std::string steps =
         m.vertical_quantum_m > 0 ? fmt::format(" in steps of {:.3g} m", m.vertical_quantum_m) : "";
     return fmt::format(
-        "{}: {}, {} x {} cells of {:.4g} x {:.4g} m, {:.1f} to {:.1f} m high{}; no data {:.2g} %, {} pits, flat {:.2g} "
-        "%, "
-        "{:.0f} % of the channel cells in complete catchments",
+        "{}: {}, {} rows x {} columns of cells of {:.4g} m north-south x {:.4g} m east-west, heights from {:.1f} to "
+        "{:.1f} m{}; no data {:.2g} %, {} pits, flat {:.2g} %, {:.0f} % of the channel cells in complete catchments",
         dem.file, dem.crs_name.empty() ? "no coordinate system" : dem.crs_name, grid.rows, grid.cols,
-        mean(grid.east_west), mean(grid.north_south), h.minimum_m, h.maximum_m, steps,
+        mean(grid.north_south), mean(grid.east_west), h.minimum_m, h.maximum_m, steps,
         100 * share(grid.size() - m.valid_cells, grid.size()), m.conditioning.pits,
         100 * share(m.conditioning.flat_cells, m.valid_cells),
         std::isnan(m.statistics.channels.share_used) ? 0 : 100 * m.statistics.channels.share_used);
