@@ -190,6 +190,9 @@ void run_into_folder(const CommonOptions& options, const std::string& figures,
     Console console(options.quiet);
     const study::Messages m = console.messages();
     study::OutputFolder folder(options.out, options.force ? study::IfPresent::replace : study::IfPresent::refuse);
+    for (const std::string& left : study::remove_abandoned(options.out)) {
+        m.report("removed " + left + ", which a run that was killed had left");
+    }
     std::string summary;
     {
         const InterruptGuard guard([&folder] { folder.discard(); }, left_behind);

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <memory>
 #include <numbers>
+#include <optional>
 
 #include "command.hpp"
 #include "thalweg/core/error.hpp"
@@ -16,10 +17,10 @@ namespace {
 struct Options {
     FileOptions file;
     std::string dem, crs, nodata, size = "1280x800", network, channel_area, tree_line, snow_line;
-    std::string style = "surface", color = "clay", sides = "block", background = "sky";
-    double azimuth = 200, elevation = 30, field_of_view = 30, sun_azimuth = 305, sun_elevation = 40;
-    double exaggeration = 1;
-    Index samples = 16, lines = 50;
+    std::string style = "surface", color, sides, background;
+    double azimuth = 200, elevation = 30, field_of_view = 30, exaggeration = 1;
+    std::optional<double> sun_azimuth, sun_elevation;
+    std::optional<Index> samples, lines;
 };
 
 constexpr double degree = std::numbers::pi / 180;
@@ -44,6 +45,12 @@ E chosen(const std::string& option, const std::string& word, std::initializer_li
     throw Error(fmt::format("{} has no '{}'; there are: {}", option, word, known));
 }
 
+template <class E>
+std::optional<E> chosen_if_given(const std::string& option, const std::string& word,
+                                 std::initializer_list<std::pair<const char*, E>> words) {
+    return word.empty() ? std::nullopt : std::optional(chosen<E>(option, word, words));
+}
+
 std::optional<double> number_if_given(const std::string& option, const std::string& text, Sign sign) {
     return text.empty() ? std::nullopt : std::optional(parse_number(option, text, sign));
 }
@@ -57,19 +64,20 @@ study::RenderOptions render_options(const Options& o) {
     r.view.azimuth = o.azimuth * degree;
     r.view.elevation = o.elevation * degree;
     r.view.field_of_view = o.field_of_view * degree;
-    r.sun_azimuth = o.sun_azimuth * degree;
-    r.sun_elevation = o.sun_elevation * degree;
+    if (o.sun_azimuth) r.sun_azimuth = *o.sun_azimuth * degree;
+    if (o.sun_elevation) r.sun_elevation = *o.sun_elevation * degree;
     r.vertical_exaggeration = o.exaggeration;
     r.style = chosen<PictureStyle>("--style", o.style,
                                    {{"surface", PictureStyle::surface},
                                     {"wireframe", PictureStyle::wireframe},
                                     {"polygons", PictureStyle::polygons}});
-    r.color = chosen<PictureColor>(
+    r.color = chosen_if_given<PictureColor>(
         "--color", o.color,
         {{"clay", PictureColor::clay}, {"kelley", PictureColor::kelley}, {"elevation", PictureColor::elevation}});
-    r.sides = chosen<PictureSides>("--sides", o.sides, {{"block", PictureSides::block}, {"none", PictureSides::none}});
-    r.background = chosen<PictureBackground>("--background", o.background,
-                                             {{"sky", PictureBackground::sky}, {"white", PictureBackground::white}});
+    r.sides = chosen_if_given<PictureSides>("--sides", o.sides,
+                                            {{"block", PictureSides::block}, {"none", PictureSides::none}});
+    r.background = chosen_if_given<PictureBackground>(
+        "--background", o.background, {{"sky", PictureBackground::sky}, {"white", PictureBackground::white}});
     r.samples = o.samples;
     r.lines = o.lines;
     if (!o.network.empty()) r.network = o.network;
@@ -86,9 +94,8 @@ void add_view_options(CLI::App& app, Options& o) {
         ->capture_default_str();
     app.add_option("--field-of-view", o.field_of_view, "across the longer side of the picture, degrees")
         ->capture_default_str();
-    app.add_option("--sun-azimuth", o.sun_azimuth, "bearing of the sun, degrees clockwise from north")
-        ->capture_default_str();
-    app.add_option("--sun-elevation", o.sun_elevation, "of the sun above the horizon, degrees")->capture_default_str();
+    app.add_option("--sun-azimuth", o.sun_azimuth, "bearing of the sun, degrees clockwise from north [default: 305]");
+    app.add_option("--sun-elevation", o.sun_elevation, "of the sun above the horizon, degrees [default: 40]");
     app.add_option("--vertical-exaggeration", o.exaggeration, "heights are multiplied by it")->capture_default_str();
 }
 
@@ -96,13 +103,13 @@ void add_drawing_options(CLI::App& app, Options& o) {
     app.add_option("--size", o.size, "width and height in pixels")->capture_default_str();
     app.add_option("--style", o.style, "surface (ray-traced), wireframe (hidden lines removed) or polygons")
         ->capture_default_str();
-    app.add_option("--color", o.color,
-                   "clay, elevation, or kelley: by elevation, location and gradient (Kelley et al. 1988)")
-        ->capture_default_str();
-    app.add_option("--sides", o.sides, "block: with sides and base; none")->capture_default_str();
-    app.add_option("--background", o.background, "sky or white")->capture_default_str();
-    app.add_option("--samples", o.samples, "rays per pixel; more are smoother and slower")->capture_default_str();
-    app.add_option("--lines", o.lines, "of wireframe and polygons, along the longer side")->capture_default_str();
+    app.add_option(
+        "--color", o.color,
+        "clay, elevation, or kelley: by elevation, location and gradient (Kelley et al. 1988) [default: clay]");
+    app.add_option("--sides", o.sides, "of a surface: block, with sides and base, or none [default: block]");
+    app.add_option("--background", o.background, "sky or white [default: sky]");
+    app.add_option("--samples", o.samples, "rays per pixel; more are smoother and slower [default: 16]");
+    app.add_option("--lines", o.lines, "of wireframe and polygons, along the longer side [default: 50]");
     app.add_option("--network", o.network, "channels to paint, e.g. network.gpkg [default: the DEM's own flow]");
     app.add_option("--channel-area-m2", o.channel_area,
                    "drainage area where the DEM's own channels begin [default: 0.1 % of the area, rounded to 1-2-5]");

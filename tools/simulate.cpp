@@ -4,7 +4,6 @@
 #include <memory>
 
 #include "command.hpp"
-#include "thalweg/study/output_folder.hpp"
 
 namespace thalweg::tools {
 namespace {
@@ -22,7 +21,6 @@ study::StoppedRun stopped_run(const Options& options) {
 
 void run(const Options& options) {
     const study::Experiment e = experiment(options.experiment);
-    if (options.resume) study::remove_abandoned(options.common.out);
     study::CheckpointFolder checkpoints(options.common.out, stopped_run(options));
     run_into_folder(
         options.common, "simulate",

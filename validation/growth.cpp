@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "support/basins.hpp"
+#include "thalweg/channel/d8_length.hpp"
 #include "thalweg/channel/horton.hpp"
 #include "thalweg/channel/tokunaga.hpp"
 #include "thalweg/core/statistics.hpp"
@@ -114,7 +115,7 @@ TEST_CASE("A grown terrain gives back its network", "[growth]") {
                                     study::positions(t.elevation), 2 * t.elevation.placement.cell_width);
                 (by_heads ? found : found_by_area).values.push_back(100.0 * r.recovered / r.grown);
                 (by_heads ? wrong : wrong_by_area).values.push_back(100.0 * r.unmatched / r.found);
-                if (by_heads) length.values.push_back(r.found_length_m / 1.055 / r.tree_length_m);
+                if (by_heads) length.values.push_back(r.found_length_m / channel::d8_length_factor / r.tree_length_m);
             }
         }
         fmt::print(

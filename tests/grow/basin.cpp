@@ -40,6 +40,11 @@ TEST_CASE("A basin that cannot be is refused with what is wrong") {
         basin.source = {500, 1200};
         CHECK_THROWS_WITH(checked_basin(basin), Catch::Contains("not inside"));
     }
+    SECTION("trunk drawn downstream") {
+        std::swap(basin.outlet, basin.source);
+        basin.outlet = {500, 1000};
+        CHECK_THROWS_WITH(checked_basin(basin), Catch::Contains("turn it round"));
+    }
     SECTION("source on the outline") {
         basin.source = {500, 1000};
         CHECK_THROWS_AS(checked_basin(basin), Error);

@@ -247,6 +247,17 @@ TEST_CASE("Growth until no link can take a tributary leaves no link that could")
     CHECK(growth.last_resorts == 0);
 }
 
+TEST_CASE("However large C is, growth until no link can take a tributary grows, if only the trunk") {
+    Dials dials;
+    dials.stop = Stop::links;
+    for (const double c : {2e4, 1e6, 1e9}) {
+        dials.channel_maintenance_m = c;
+        const Network network = grow::grow(square_basin(10000), dials).network;
+        CHECK(network.size() == 1);
+        CHECK(total_area(network) == Approx(1e8).epsilon(1e-12));
+    }
+}
+
 TEST_CASE("The same seed grows the same network, another seed another") {
     Dials dials;
     dials.channel_maintenance_m = 200;
@@ -398,7 +409,8 @@ TEST_CASE("Impossible dials are refused by name") {
     };
     refused([](Dials& d) { d.channel_maintenance_m = 0; }, "channel_maintenance_m");
     refused([](Dials& d) { d.channel_maintenance_m = std::nan(""); }, "channel_maintenance_m");
-    refused([](Dials& d) { d.channel_maintenance_m = 2000; }, "trunk alone");
+    refused([](Dials& d) { d.channel_maintenance_m = 2000; }, "the trunk alone leaves 1500 m²");
+    refused([](Dials& d) { d.channel_maintenance_m = 1e9; }, "(1e+06 m² over 666.667 m)");
     refused([](Dials& d) { d.channel_maintenance_m = 1e-3; }, "more than 1e8 links");
     refused([](Dials& d) { d.mean_junction = 1.2; }, "mean_junction");
     refused([](Dials& d) { d.delta_junction = -0.1; }, "delta_junction");

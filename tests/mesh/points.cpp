@@ -161,7 +161,7 @@ TEST_CASE("Outlines that are no simple polygons are refused") {
     refuses({{0, 0}, {1, 0}, {2, 0}});
     refuses({{0, 0}, {1, 1}, {1, 0}, {0, 1}});           // a bow tie, no area
     refuses({{0, 0}, {3, 0}, {3, 3}, {1, -1}, {0, 3}});  // a side through another
-    refuses({{0, 0}, {1, 0}, {1, 0}, {1, 1}, {0, 1}});   // a repeated corner
+    refuses({{0, 0}, {1, 0}, {1, 1}, {1, 0}, {0, 1}});   // a corner twice
     refuses({{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}});   // a corner that touches a side
     refuses({{0, 0}, {std::nan(""), 0}, {1, 1}});
 }

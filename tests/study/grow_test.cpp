@@ -8,6 +8,7 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "study/grown_outputs.hpp"
 #include "support/temp_folder.hpp"
 #include "thalweg/core/parallel.hpp"
 #include "thalweg/core/random.hpp"
@@ -24,7 +25,6 @@ using namespace thalweg;
 using namespace thalweg::study;
 using test::error_of;
 using test::TempFolder;
-using Json = nlohmann::json;
 
 namespace {
 
@@ -228,6 +228,105 @@ TEST_CASE("Fractal roughness displaces no channel, roughens valley sides as far 
     CHECK(most == 0);
 }
 
+TEST_CASE("The mesh is as rough as the raster, on channels and on valley sides") {
+    Experiment e = small_growth();
+    const GrownTerrain plain = grown(e);
+    e.growth.roughness_m = 5;
+    for (const RoughnessKind kind : {RoughnessKind::noise, RoughnessKind::subdivision}) {
+        e.growth.roughness_kind = kind;
+        const GrownTerrain rough = grown(e);
+        Experiment smooth = e;
+        smooth.growth.roughness_m = 0;
+        const TriangleSurface with = triangles_of(e, rough), without = triangles_of(smooth, plain);
+        REQUIRE(with.size() == without.size());
+        const grow::SurfaceMesh& mesh = rough.surface.mesh;
+        std::vector<double> sides;
+        for (Index i = 0; i < with.size(); ++i) {
+            const double added = with.z[i] - without.z[i];
+            REQUIRE(std::isfinite(added));
+            if (i >= mesh.size()) {
+                sides.push_back(std::abs(added));
+            } else if (mesh.on_channel[i]) {
+                REQUIRE(std::abs(added) < 1e-9);
+            }
+        }
+        CHECK(quantile(sides, 0.5) > 0.05);
+        // What it adds is what the raster has, at a cell's centre as at any other place.
+        std::vector<Point> centers;
+        for (Index cell = 0; cell < rough.elevation.grid.size(); ++cell) {
+            const Point p =
+                rough.elevation.placement.center(rough.elevation.grid.row(cell), rough.elevation.grid.col(cell));
+            centers.push_back({p.x - rough.site.basin.outlet.x, p.y - rough.site.basin.outlet.y});
+        }
+        const std::vector<double> at = roughness_at(e, rough, centers);
+        for (Index cell = 0; cell < rough.elevation.grid.size(); ++cell) {
+            if (std::isnan(rough.elevation.values[cell])) continue;
+            REQUIRE(at[cell] == Approx(rough.elevation.values[cell] - plain.elevation.values[cell]).margin(1e-6));
+        }
+    }
+}
+
+TEST_CASE("Channels wider than their valley and sides flatter than their channel are counted and told") {
+    const TempFolder folder;
+    Experiment e = small_growth();
+    std::vector<std::string> warnings;
+    Messages messages;
+    messages.warning = [&](const std::string& text) { warnings.push_back(text); };
+    const auto warned = [&](const char* out, const char* what) {
+        std::filesystem::create_directory(folder / out);
+        warnings.clear();
+        const Json s = Json::parse(study::grow(e, folder / out, messages));
+        Index about = 0;
+        for (const std::string& text : warnings) about += text.find(what) != std::string::npos;
+        return std::pair{about, s["sides_flatter_than_channels"].get<Index>()};
+    };
+    e.growth.channel_width_m = 5;
+    CHECK(warned("narrow", "channels' banks") == std::pair<Index, Index>{0, 0});
+    e.growth.channel_width_m = 300;
+    CHECK(warned("wide", "channels' banks").first == 1);
+    e.growth.dials.flint.p = 0.45;  // between the tangents of 20° and 30°
+    const auto [told, flat] = warned("steep", "less steep than their channel");
+    const grow::Network& network = grown(e).growth.network;
+    Index counted = 0;
+    for (Index link = 0; link < network.size(); ++link) {
+        const double gradient = 0.45 * std::pow(2.0 * network.magnitude[link] - 1, -0.6);
+        counted += (network.sidewall_slope[link][0] < gradient) + (network.sidewall_slope[link][1] < gradient);
+    }
+    CHECK(told == 1);
+    CHECK(flat == counted);
+    CHECK(counted > 0);
+}
+
+TEST_CASE("Slopes of links keep their digits far above the sea") {
+    Experiment e = small_growth();
+    const GrownTerrain low = grown(e);
+    e.basin.base_level_m = 1e9;
+    const GrownTerrain high = grown(e);
+    for (Index link = 0; link < low.tree.size(); ++link) {
+        REQUIRE(high.tree.drop_m[link] == low.tree.drop_m[link]);
+        const double slope = 0.1 * std::pow(2.0 * low.tree.shreve[link] - 1, -0.6);
+        REQUIRE(low.tree.drop_m[link] == Approx(slope * low.tree.length_m[link]).epsilon(1e-14));
+    }
+}
+
+TEST_CASE("What is found again is not told where cells are as coarse as links") {
+    const TempFolder folder;
+    Experiment e = small_growth();
+    for (const Index cells : {12, 200}) {
+        e.output.resolution = cells;
+        const auto out = folder / std::to_string(cells);
+        std::filesystem::create_directory(out);
+        const Json s = Json::parse(study::grow(e, out, Messages{}));
+        for (const char* by : {"by_area", "by_heads"}) {
+            for (const char* key : {"recovered_share", "false_share", "length_ratio"}) {
+                CHECK(s["recovery"][by][key].is_null() == (cells == 12));
+            }
+        }
+        const bool explained = s["notes"].dump().find("two cells are longer than the median link") != std::string::npos;
+        CHECK(explained == (cells == 12));
+    }
+}
+
 TEST_CASE("A grown terrain is the start of a simulation on the same outline") {
     const TempFolder folder;
     std::filesystem::create_directory(folder / "growth");
@@ -273,11 +372,20 @@ TEST_CASE("What cannot be grown is refused before anything is written") {
     e.growth.channel_maintenance_m = 1e6;
     CHECK_THAT(refusal(e), Catch::Contains("trunk alone"));
     e = small_growth();
+    e.growth.dials.flint.p = 0.6;  // sides are at most 30° steep
+    CHECK_THAT(refusal(e), Catch::Contains("growth.flint_p is 0.6") && Catch::Contains("0.577"));
+    e = small_growth();
     e.growth.dials.sidewall_angle_deg = 88;
     CHECK_THAT(refusal(e), Catch::Contains("sidewall_angle_deg"));
     e = small_growth();
     e.output.base_depth_m = 3;
     CHECK_THAT(refusal(e), Catch::Contains("output.solid"));
+    e = small_growth();
+    e.basin.outline = std::vector<Point>{{0, 0}, {10000, 0}, {10000, 5}, {0, 5}};
+    e.basin.trunk = std::vector<Point>{{0, 2.5}, {9000, 2.5}};
+    e.growth.channel_maintenance_m = 3;
+    CHECK_THAT(refusal(e),
+               Catch::Contains("narrower (5 m) than a cell (50 m)") && Catch::Contains("resolution = 4001"));
     CHECK_FALSE(std::filesystem::exists(folder / "none"));
 }
 

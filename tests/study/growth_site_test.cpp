@@ -80,6 +80,85 @@ TEST_CASE("An outline and a trunk from GeoJSON files in degrees lie on a plane i
     CHECK_THAT(site.warnings[1], Catch::Contains("its outlet lay 1.21 m off the outline"));
 }
 
+TEST_CASE("A basin across ±180° is as large as one elsewhere, however its longitudes are written") {
+    const TempFolder folder;
+    const auto site_about = [&](double west, double middle, double east, double trunk) {
+        const auto text = [](double lon, double lat) {
+            return "[" + std::to_string(lon) + "," + std::to_string(lat) + "]";
+        };
+        std::string ring;
+        for (const auto& [lon, lat] :
+             {std::pair{west, -17.0}, {middle, -17.0}, {east, -17.0}, {east, -16.9}, {west, -16.9}}) {
+            ring += text(lon, lat) + ",";
+        }
+        Experiment e;
+        e.basin.outline =
+            folder.text("basin.geojson", R"({"type": "Polygon", "coordinates": [[)" + ring + text(west, -17) + "]]}");
+        e.basin.trunk = folder.text("trunk.geojson", R"({"type": "LineString", "coordinates": [)" + text(trunk, -17) +
+                                                         "," + text(trunk, -16.92) + "]}");
+        return site_of(e);
+    };
+    const GrowthSite elsewhere = site_about(9.95, 10, 10.05, 10.01);
+    const auto same = [&](const GrowthSite& site) {
+        REQUIRE(site.basin.outline.size() == elsewhere.basin.outline.size());
+        for (std::size_t i = 0; i < site.basin.outline.size(); ++i) {
+            CHECK(site.basin.outline[i].x == Approx(elsewhere.basin.outline[i].x).margin(1e-3));
+            CHECK(site.basin.outline[i].y == Approx(elsewhere.basin.outline[i].y).margin(1e-3));
+        }
+        CHECK(site.basin.source.x == Approx(elsewhere.basin.source.x).margin(1e-3));
+        CHECK(site.basin.outlet.y == Approx(elsewhere.basin.outlet.y).margin(1e-3));
+    };
+    same(site_about(179.95, 180, -179.95, -179.99));
+    same(site_about(179.95, -180, -179.95, -179.99));
+    same(site_about(179.95, 180, 180.05, -179.99));
+    same(site_about(-180.05, -180, -179.95, 180.01));
+    same(site_about(359.95, 0, 0.05, 0.01));
+    Experiment e;
+    e.basin.outline = folder.text(
+        "pole.geojson", R"({"type": "Polygon", "coordinates": [[[0, 80], [90, 80], [180, 80], [-90, 80], [0, 80]]]})");
+    e.basin.trunk = std::vector<Point>{{0, 80}, {0, 85}};
+    CHECK_THAT(refusal(e), Catch::Contains("basin.outline goes around a pole"));
+    e.basin.outline = folder.text("cut.geojson", R"({"type": "MultiPolygon", "coordinates": [
+        [[[179, 0], [180, 0], [180, 1], [179, 1], [179, 0]]], [[[-180, 0], [-179, 0], [-179, 1], [-180, 1], [-180, 0]]]]})");
+    CHECK_THAT(refusal(e), Catch::Contains("draw it in one piece, with longitudes beyond 180"));
+}
+
+TEST_CASE("A trunk that was drawn downstream is turned round, and that is said") {
+    Experiment e;
+    e.basin.outline = square;
+    const auto turned = [&](const Point& first, const Point& last) {
+        e.basin.trunk = std::vector<Point>{first, last};
+        const GrowthSite site = site_of(e);
+        const bool is_turned = !site.warnings.empty() && site.warnings[0].find("turned round") != std::string::npos;
+        CHECK(site.basin.outlet.y == 0);
+        CHECK(site.basin.source == (is_turned ? first : last));
+        return is_turned;
+    };
+    CHECK(turned({500, 800}, {500, 0}));
+    CHECK(turned({500, 800}, {500, 10}));   // not quite on the outline
+    CHECK(turned({500, 800}, {500, -10}));  // nor inside it
+    CHECK(turned({500, 995}, {500, 0}));    // its source is near the outline, too
+    CHECK_FALSE(turned({500, 0}, {500, 800}));
+    CHECK_FALSE(turned({500, 0}, {500, 995}));
+    CHECK_FALSE(turned({500, 5}, {500, 800}));
+    e.basin.trunk = std::vector<Point>{{500, 0}, {500, 1000}};
+    CHECK_THAT(refusal(e), Catch::Contains("not inside") && Catch::Contains("turn it round"));
+}
+
+TEST_CASE("An outline that crosses itself is told where, on the map") {
+    const TempFolder folder;
+    Experiment e;
+    e.basin.outline = folder.text(
+        "bow.geojson", R"({"type": "Polygon", "coordinates": [[[10, 47], [11, 48], [11, 47], [10, 48], [10, 47]]]})");
+    e.basin.trunk = std::vector<Point>{{10, 47.5}, {10.2, 47.5}};
+    CHECK_THAT(refusal(e), Catch::Contains("itself at (10.5, 47.5)"));
+    std::vector<Point> repeating;
+    for (const Point& p : square) repeating.insert(repeating.end(), {p, p});
+    e.basin.outline = repeating;
+    e.basin.trunk = std::vector<Point>{{500, 0}, {500, 800}};
+    CHECK(site_of(e).basin.outline == square);
+}
+
 TEST_CASE("A DEM gives its largest basin's outline, and its main stream as trunk") {
     const Raster dem = valley();
     const GrowthSite site = growth_site(Catchment{dem, 59 * 40 + 20});

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/study/output_folder.hpp"
 
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <catch2/catch.hpp>
 
 #include "support/temp_folder.hpp"
@@ -96,6 +99,60 @@ TEST_CASE("A link to a folder that a user put beside our results keeps them from
     OutputFolder(temp / "out", IfPresent::refuse).commit();
     std::filesystem::create_directory_symlink(temp / ".", temp / "out/elsewhere");
     CHECK(error_of([&] { OutputFolder(temp / "out", IfPresent::replace); }).find("elsewhere") != std::string::npos);
+}
+
+TEST_CASE("What killed runs left of the same folder is removed, and nothing of a living one or of another") {
+    const TempFolder temp;
+    const pid_t gone = ::fork();
+    if (gone == 0) ::_exit(0);
+    ::waitpid(gone, nullptr, 0);
+    const auto of = [&](const std::string& folder, pid_t process) {
+        return temp / ("." + folder + ".partial-" + std::to_string(process));
+    };
+    std::filesystem::create_directory(of("out", ::getppid()));
+    std::filesystem::create_directories(of("out", gone) / "figures");
+    std::ofstream(of("out", gone) / "figures/map.png") << "half";
+    std::filesystem::create_directory(of("other", gone));
+    std::filesystem::create_directory(temp / ".out.partial-");
+    std::filesystem::create_directory(temp / (".out.partial-" + std::to_string(gone) + "x"));
+    std::filesystem::create_directory(temp / "kept");
+    std::filesystem::create_directory_symlink(temp / "kept", of("out", 2147483646));
+    OutputFolder living(temp / "out", IfPresent::refuse);
+    CHECK(remove_abandoned(temp / "out/") == std::vector{of("out", gone).filename().string()});
+    CHECK_FALSE(std::filesystem::exists(of("out", gone)));
+    CHECK(std::filesystem::is_directory(living.path()));
+    CHECK(std::distance(std::filesystem::directory_iterator(temp / "."), {}) == 7);
+    CHECK(remove_abandoned(temp / "out").empty());
+}
+
+TEST_CASE("A folder locked by a process whose number this machine does not know is left alone") {
+    const TempFolder temp;
+    const pid_t gone = ::fork();
+    if (gone == 0) ::_exit(0);
+    ::waitpid(gone, nullptr, 0);
+    const std::filesystem::path mine = [&] {
+        OutputFolder folder(temp / "out", IfPresent::refuse);
+        const auto elsewhere = temp / (".out.partial-" + std::to_string(gone));
+        std::filesystem::rename(folder.path(), elsewhere);  // as if its process lived on another machine
+        CHECK(remove_abandoned(temp / "out").empty());
+        CHECK(std::filesystem::exists(elsewhere));
+        return elsewhere;
+    }();
+    CHECK(remove_abandoned(temp / "out").size() == 1);  // it has ended, and its lock with it
+    CHECK_FALSE(std::filesystem::exists(mine));
+}
+
+TEST_CASE("What a killed run of this process' own number left does not get into the results") {
+    const TempFolder temp;
+    const auto left = temp / (".out.partial-" + std::to_string(::getpid()));
+    std::filesystem::create_directory(left);
+    std::ofstream(left / "stale.txt") << "old";
+    OutputFolder folder(temp / "out", IfPresent::refuse);
+    CHECK(error_of([&] { OutputFolder(temp / "out", IfPresent::refuse); }).find("is writing") != std::string::npos);
+    write_text(folder.path() / "summary.json", "new");
+    folder.commit();
+    CHECK_FALSE(std::filesystem::exists(temp / "out/stale.txt"));
+    CHECK(test::bytes_of(temp / "out/summary.json") == "new");
 }
 
 TEST_CASE("Text that cannot be written whole is an error") {

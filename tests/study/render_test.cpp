@@ -81,7 +81,11 @@ TEST_CASE("A real DEM in degrees is drawn in each style and colour, the same for
         for (const PictureColor color : {PictureColor::clay, PictureColor::kelley, PictureColor::elevation}) {
             RenderOptions o = small();
             o.style = style;
-            o.color = color;
+            if (style == PictureStyle::wireframe) {
+                o.samples.reset();
+            } else {
+                o.color = color;
+            }
             const auto drawn = [&](int threads) {
                 const ThreadLimit limit(threads);
                 return render_dem(jacksboro, "view.png", o, {});
@@ -162,11 +166,48 @@ TEST_CASE("A small DEM is not painted as if all of it were water") {
 TEST_CASE("Lines become SVG, surfaces do not") {
     RenderOptions o = small();
     o.style = PictureStyle::wireframe;
+    o.samples.reset();
     const std::string svg = render_dem(jacksboro, "view.svg", o, {});
     CHECK(svg.starts_with("<svg"));
     CHECK(std::count(svg.begin(), svg.end(), 'L') > 1000);
     o.style = PictureStyle::surface;
     CHECK(is_sentence(error_of([&] { render_dem(jacksboro, "view.svg", o, {}); })));
+}
+
+TEST_CASE("What a picture would not show is refused by name") {
+    const auto refused = [](PictureStyle style, const char* out, auto change, const char* name) {
+        RenderOptions o;
+        o.style = style;
+        change(o);
+        const std::string error = error_of([&] { render_dem(jacksboro, out, o, {}); });
+        CHECK(is_sentence(error));
+        CHECK_THAT(error, Catch::StartsWith(std::string(name) + " does not show"));
+    };
+    const auto lines = [](RenderOptions& o) { o.lines = 60; };
+    const auto samples = [](RenderOptions& o) { o.samples = 4; };
+    const auto sides = [](RenderOptions& o) { o.sides = PictureSides::none; };
+    const auto color = [](RenderOptions& o) { o.color = PictureColor::elevation; };
+    const auto background = [](RenderOptions& o) { o.background = PictureBackground::white; };
+    const auto sun = [](RenderOptions& o) { o.sun_azimuth = 1; };
+    const auto height = [](RenderOptions& o) { o.sun_elevation = 1; };
+    refused(PictureStyle::surface, "view.png", lines, "--lines");
+    refused(PictureStyle::wireframe, "view.png", samples, "--samples");
+    refused(PictureStyle::wireframe, "view.png", sides, "--sides");
+    refused(PictureStyle::wireframe, "view.svg", color, "--color");
+    refused(PictureStyle::wireframe, "view.png", background, "--background");
+    refused(PictureStyle::wireframe, "view.png", sun, "--sun-azimuth");
+    refused(PictureStyle::wireframe, "view.png", height, "--sun-elevation");
+    refused(PictureStyle::polygons, "view.png", sides, "--sides");
+    refused(PictureStyle::polygons, "view.svg", samples, "--samples");
+    refused(PictureStyle::polygons, "view.svg", background, "--background");
+    for (const auto& shown : {+samples, +background, +color, +sun, +lines}) {
+        RenderOptions o;
+        o.view.width = 60;
+        o.view.height = 40;
+        o.style = PictureStyle::polygons;
+        shown(o);
+        CHECK(error_of([&] { render_dem(jacksboro, "view.png", o, {}); }) == "");
+    }
 }
 
 TEST_CASE("Pictures that cannot be drawn are refused with a sentence") {

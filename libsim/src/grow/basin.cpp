@@ -43,16 +43,6 @@ bool is_inside(const Polygon& outline, const Point& p) {
     return inside;
 }
 
-/// Nearest point of the outline.
-Point nearest_on_outline(const Polygon& outline, const Point& p) {
-    Point nearest = outline[0];
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-        const Point on_side = nearest_on_segment(outline[i], outline[(i + 1) % outline.size()], p);
-        if (norm(on_side - p) < norm(nearest - p)) nearest = on_side;
-    }
-    return nearest;
-}
-
 /// The outlet on the outline, in a corner if that is as near as can be told.
 Point outlet_on_outline(const Polygon& outline, const Point& outlet) {
     const double tolerance = on_outline * bounding_diagonal(outline);
@@ -70,7 +60,10 @@ Point outlet_on_outline(const Polygon& outline, const Point& outlet) {
 void check_source(const Polygon& outline, const Point& source) {
     const double off_outline = norm(nearest_on_outline(outline, source) - source);
     if (is_inside(outline, source) && off_outline > on_outline * bounding_diagonal(outline)) return;
-    throw Error(fmt::format("the trunk's source ({}, {}) is not inside the basin's outline", source.x, source.y));
+    throw Error(fmt::format(
+        "the trunk's source ({}, {}) is not inside the basin's outline: a trunk runs from its outlet on the "
+        "outline up to its source; turn it round if it was drawn downstream",
+        source.x, source.y));
 }
 
 /// The source is inside; the outlet may be a corner.
@@ -93,6 +86,15 @@ void check_trunk(const Basin& basin) {
 }
 
 }  // namespace
+
+Point nearest_on_outline(const Polygon& outline, const Point& p) {
+    Point nearest = outline[0];
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+        const Point on_side = nearest_on_segment(outline[i], outline[(i + 1) % outline.size()], p);
+        if (norm(on_side - p) < norm(nearest - p)) nearest = on_side;
+    }
+    return nearest;
+}
 
 Basin checked_basin(const Basin& basin) {
     Basin checked = basin;

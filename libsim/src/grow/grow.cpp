@@ -17,6 +17,7 @@
 #include "grow/plane.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/random.hpp"
+#include "thalweg/mesh/triangulate.hpp"
 
 namespace thalweg::grow {
 namespace {
@@ -317,6 +318,7 @@ Index outlet_corner(const Polygon& outline) {
 
 /// The basin cut in two along the trunk and on to its edge.
 GrowingTree cut_along_trunk(const Basin& basin, double c) {
+    c = std::min(c, norm(basin.source - basin.outlet));  // with `stop = links` it may be far larger than the basin
     const Polygon outline = outline_from_outlet(basin);
     const Index outlet = outlet_corner(outline);
     GrowingTree tree{.basin = Subdivision(outline), .links = {}, .streams = {}, .junctions = {}, .sources = {}};
@@ -344,13 +346,15 @@ GrowingTree cut_along_trunk(const Basin& basin, double c) {
     return tree;
 }
 
-void check_against_basin(const Dials& dials, double area, double trunk) {
+void check_against_basin(const Dials& dials, const Basin& basin) {
     const double c = dials.channel_maintenance_m;
+    const double area = mesh::polygon_area(basin.outline);
+    const double trunk = norm(basin.source - basin.outlet);
     if (dials.stop == Stop::density && area / trunk <= c) {
-        throw Error(
-            fmt::format("channel_maintenance_m is {}, but the trunk alone leaves {:.6g} m² of basin per metre "
-                        "of channel: give a smaller one, or a shorter trunk",
-                        c, area / trunk));
+        throw Error(fmt::format(
+            "channel_maintenance_m is {}, but the trunk alone leaves {:.6g} m² of basin per metre of channel "
+            "({:.6g} m² over {:.6g} m): give a smaller one, or a shorter trunk",
+            c, area / trunk, area, trunk));
     }
     if (area > 1e8 * c * c) {
         throw Error(
@@ -368,9 +372,9 @@ Growth grow(const Basin& given, const Dials& dials) {
 Growth grow(const Basin& given, const Dials& dials, Stages& stages) {
     check_dials(dials);
     const Basin basin = checked_basin(given);
+    check_against_basin(dials, basin);
     GrowingTree tree = cut_along_trunk(basin, dials.channel_maintenance_m);
     const double area = tree.links[0].area();
-    check_against_basin(dials, area, tree.length_m);
     return Grower(std::move(tree), dials, area).run(basin.outlet, stages);
 }
 

@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "thalweg/core/error.hpp"
@@ -32,6 +34,7 @@ struct Side {
     Kernel::Segment_2 segment;
     double west, east, south, north;
     std::size_t ring;
+    std::size_t number;  ///< of its first corner
 };
 
 std::vector<Side> sides_from_west_to_east(const Rings& rings) {
@@ -42,24 +45,83 @@ std::vector<Side> sides_from_west_to_east(const Rings& rings) {
             const auto& a = corners[i];
             const auto& b = corners[(i + 1) % corners.size()];
             sides.push_back({Kernel::Segment_2(a, b), std::min(a.x(), b.x()), std::max(a.x(), b.x()),
-                             std::min(a.y(), b.y()), std::max(a.y(), b.y()), ring});
+                             std::min(a.y(), b.y()), std::max(a.y(), b.y()), ring, i});
         }
     }
     std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.west < b.west; });
     return sides;
 }
 
-/// Whether sides of different rings have a point in common; exact. A sweep over the sides by their western ends.
-bool rings_touch(const Rings& rings) {
+/// The first two sides that `may_not_meet` but do; exact. A sweep over the sides by their western ends.
+template <class MayNotMeet>
+std::optional<std::pair<Side, Side>> meeting(const Rings& rings, MayNotMeet may_not_meet) {
     const std::vector<Side> sides = sides_from_west_to_east(rings);
     for (std::size_t i = 0; i < sides.size(); ++i) {
         for (std::size_t j = i + 1; j < sides.size() && sides[j].west <= sides[i].east; ++j) {
-            if (sides[i].ring == sides[j].ring) continue;
             if (sides[i].north < sides[j].south || sides[j].north < sides[i].south) continue;
-            if (CGAL::do_intersect(sides[i].segment, sides[j].segment)) return true;
+            if (may_not_meet(sides[i], sides[j])) return std::pair{sides[i], sides[j]};
         }
     }
-    return false;
+    return std::nullopt;
+}
+
+bool rings_touch(const Rings& rings) {
+    return meeting(rings, [](const Side& a,
+                             const Side& b) { return a.ring != b.ring && CGAL::do_intersect(a.segment, b.segment); })
+        .has_value();
+}
+
+/// A place that two sides which meet have in common; a corner of both only if there is no other.
+Kernel::Point_2 common_place(const Side& a, const Side& b) {
+    std::optional<Kernel::Point_2> corner_of_both;
+    for (const auto& [side, other] : {std::pair{&a, &b}, {&b, &a}}) {
+        for (const auto& end : {side->segment.source(), side->segment.target()}) {
+            if (!other->segment.has_on(end)) continue;
+            if (end != other->segment.source() && end != other->segment.target()) return end;
+            corner_of_both = end;
+        }
+    }
+    if (corner_of_both) return *corner_of_both;
+    const auto u = a.segment.to_vector(), v = b.segment.to_vector(), w = b.segment.source() - a.segment.source();
+    return a.segment.source() + (w.x() * v.y() - w.y() * v.x()) / (u.x() * v.y() - u.y() * v.x()) * u;
+}
+
+/// Throws Error that says where a ring without repeated corners meets itself.
+[[noreturn]] void refuse_self_meeting(const Polygon& ring) {
+    const std::size_t corners = ring.size();
+    const auto found = meeting({ring}, [&](const Side& a, const Side& b) {
+        if (!CGAL::do_intersect(a.segment, b.segment)) return false;
+        const bool b_follows = (a.number + 1) % corners == b.number;
+        if (!b_follows && (b.number + 1) % corners != a.number) return true;
+        const Side& first = b_follows ? a : b;  // neighbours may meet, but only in their corner
+        const Side& second = b_follows ? b : a;
+        return first.segment.has_on(second.segment.target()) || second.segment.has_on(first.segment.source());
+    });
+    if (!found) throw Error("the outline crosses or touches itself: it must be one simple ring");
+    const auto place = common_place(found->first, found->second);
+    const auto text = [](const auto& p) { return fmt::format("({}, {})", p.x(), p.y()); };
+    throw Error(
+        fmt::format("the outline crosses or touches itself at {}, where its sides {}–{} and {}–{} meet: it must be "
+                    "one simple ring",
+                    text(place), text(found->first.segment.source()), text(found->first.segment.target()),
+                    text(found->second.segment.source()), text(found->second.segment.target())));
+}
+
+bool on_one_line(const Polygon& ring) {
+    const auto corners = corners_of(ring);
+    return std::all_of(corners.begin(), corners.end(), [&](const Kernel::Point_2& p) {
+        return CGAL::collinear(corners[0], corners[1], p);  // two corners that differ
+    });
+}
+
+/// The ring without corners that repeat the one before, the last one's being the first.
+Polygon without_repeats(const Polygon& ring) {
+    Polygon kept;
+    for (const Point& p : ring) {
+        if (kept.empty() || p != kept.back()) kept.push_back(p);
+    }
+    while (kept.size() > 1 && kept.back() == kept.front()) kept.pop_back();
+    return kept;
 }
 
 /// Whether the first corner of one ring, and so all of it, lies inside another.
@@ -82,18 +144,19 @@ double polygon_area(const Polygon& polygon) {
 }
 
 Polygon checked_outline(const Polygon& outline) {
-    if (outline.size() < 3) throw Error(fmt::format("an outline needs at least 3 corners, not {}", outline.size()));
     for (const Point& p : outline) {
         if (!std::isfinite(p.x) || !std::isfinite(p.y)) {
             throw Error(fmt::format("the outline has a corner at ({}, {}): all need finite coordinates", p.x, p.y));
         }
     }
-    const double area = polygon_area(outline);
-    if (!(std::abs(area) > 0)) throw Error("the outline encloses no area: its corners lie on one line");
-    if (!is_simple(outline)) {
-        throw Error("the outline crosses or touches itself: it must be one simple ring without repeated corners");
+    Polygon checked = without_repeats(outline);
+    if (checked.size() < 3) {
+        throw Error(fmt::format("an outline needs at least 3 corners in different places, not {}", checked.size()));
     }
-    Polygon checked = outline;
+    if (on_one_line(checked)) throw Error("the outline encloses no area: its corners lie on one line");
+    if (!is_simple(checked)) refuse_self_meeting(checked);
+    const double area = polygon_area(checked);
+    if (!(std::abs(area) > 0)) throw Error("the outline encloses no area that could be told from rounding");
     if (area < 0) std::reverse(checked.begin(), checked.end());
     return checked;
 }

@@ -64,12 +64,6 @@ Domain rectangle_domain(const Experiment& e) {
     return driven(e, std::move(site));
 }
 
-/// What a GeoJSON file without a coordinate system is taken for, though it cannot be: degrees.
-bool beyond_the_globe(const Polygon& outline) {
-    return std::any_of(outline.begin(), outline.end(),
-                       [](const Point& p) { return std::abs(p.x) > 360 || std::abs(p.y) > 90; });
-}
-
 Domain outline_domain(const Experiment& e) {
     const std::filesystem::path& file = *e.domain.outline;
     const io::VectorShapes shapes = io::read_vectors(file);
@@ -79,8 +73,12 @@ Domain outline_domain(const Experiment& e) {
                                 shapes.polygons.empty() ? "draw it as a polygon, not as a line"
                                                         : "keep the one that is meant (ogr2ogr -where or -sql)"));
     }
-    const PolygonPart& drawn = shapes.polygons.front();
+    PolygonPart drawn = shapes.polygons.front();
     const bool flat = shapes.geographic && beyond_the_globe(drawn.outer);
+    if (shapes.geographic && !flat) {
+        drawn.outer = ring_without_jumps("domain.outline", std::move(drawn.outer));
+        for (Polygon& hole : drawn.holes) hole = without_jumps(std::move(hole), drawn.outer.front().x);
+    }
     const MapPlane plane =
         plane_about(drawn.outer, shapes.geographic && !flat, shapes.unit_m, flat ? "" : shapes.crs_wkt);
     PolygonPart outline{plane.from_map(drawn.outer), {}};

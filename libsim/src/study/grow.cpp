@@ -4,12 +4,14 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "study/grown_outputs.hpp"
 #include "study/growth_frames.hpp"
 #include "study/stopwatch.hpp"
 #include "study/terrain_files.hpp"
+#include "thalweg/channel/d8_length.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/io/raster_file.hpp"
 #include "thalweg/io/table_file.hpp"
@@ -20,8 +22,7 @@ namespace thalweg::study {
 namespace {
 
 constexpr double degrees_per_radian = 180 / std::numbers::pi;
-constexpr double within_cells = 2;    ///< so near a junction counts as found again
-constexpr double d8_stretch = 1.055;  ///< by which paths of eight directions are longer than lines, on average
+constexpr double within_cells = 2;  ///< so near a junction counts as found again
 
 const char* name_of(grow::StopReason reason) {
     switch (reason) {
@@ -48,6 +49,17 @@ TerrainInput input_of(const GrownTerrain& t, const RasterMeasurement& m) {
     return input;
 }
 
+double median_link_m(const GrownTerrain& t) {
+    std::vector<double> lengths = t.growth.network.length_m;
+    return quantile(std::move(lengths), 0.5);
+}
+
+/// Whether a junction found within so many cells of one grown says anything: where links are as short as that, there is
+/// nearly always one.
+bool can_be_found_again(const GrownTerrain& t) {
+    return within_cells * t.elevation.grid.east_west[0] < median_link_m(t);
+}
+
 /// What an analysis of the raster finds again of the tree.
 Json recovery_json(const GrownTerrain& t, const RasterMeasurement& m) {
     const grow::Network& network = t.growth.network;
@@ -56,11 +68,12 @@ Json recovery_json(const GrownTerrain& t, const RasterMeasurement& m) {
     const double cell = t.elevation.placement.cell_width;
     const Recovery r = recovery(map_places(t.site, network, vertices), grow::total_length(network),
                                 m.statistics.network, positions(t.elevation), within_cells * cell);
+    const double known = can_be_found_again(t) ? 1 : std::numeric_limits<double>::quiet_NaN();
     return {{"junctions", r.grown},
             {"junctions_found", r.found},
-            {"recovered_share", number(static_cast<double>(r.recovered) / r.grown)},
-            {"false_share", number(static_cast<double>(r.unmatched) / r.found)},
-            {"length_ratio", number(r.found_length_m / d8_stretch / r.tree_length_m)}};
+            {"recovered_share", number(known * r.recovered / r.grown)},
+            {"false_share", number(known * r.unmatched / r.found)},
+            {"length_ratio", number(known * r.found_length_m / channel::d8_length_factor / r.tree_length_m)}};
 }
 
 Json angles_json(const GrownTerrain& t) {
@@ -70,6 +83,17 @@ Json angles_json(const GrownTerrain& t) {
             {"drawn_sd_deg", number(a.drawn_sd * degrees_per_radian)},
             {"howard_mean_deg", number(a.howard_mean * degrees_per_radian)},
             {"howard_sd_deg", number(a.howard_sd * degrees_per_radian)}};
+}
+
+/// Valley sides less steep than their channel: no plane through the channel is as flat as they should be.
+Index sides_flatter_than_channels(const GrownTerrain& t) {
+    const grow::Network& network = t.growth.network;
+    Index count = 0;
+    for (Index link = 0; link < network.size(); ++link) {
+        const double channel = grow::gradient(t.dials.flint, network.magnitude[link]);
+        for (const double side : network.sidewall_slope[link]) count += side < channel;
+    }
+    return count;
 }
 
 /// The terrain as `analyze` sees it, once with channels as long as the tree and once with its sources.
@@ -110,6 +134,7 @@ Json summary_json(const GrownTerrain& t, const Measured& m) {
                  {"vertices", t.surface.mesh.size()},
                  {"triangles", t.surface.mesh.triangles.size()},
                  {"limited_gradients", t.surface.limited_gradients},
+                 {"sides_flatter_than_channels", sides_flatter_than_channels(t)},
                  {"tributary_angles", angles_json(t)}};
     summary["tree"] = tree_json(tree_statistics(network, t.tree), notes);
     summary["terrain"] = terrain_json(input_of(t, m.by_area), m.by_area.statistics, positions(t.elevation),
@@ -119,7 +144,12 @@ Json summary_json(const GrownTerrain& t, const Measured& m) {
     summary["recovery"] = {{"within_m", within_cells * t.elevation.grid.east_west[0]},
                            {"by_heads", recovery_json(t, m.by_heads)},
                            {"by_area", recovery_json(t, m.by_area)}};
-    explain_null("recovery", summary["recovery"], "a share needs a junction", notes);
+    explain_null("recovery", summary["recovery"],
+                 can_be_found_again(t)
+                     ? "a share needs a junction"
+                     : "two cells are longer than the median link, so that near every junction there is "
+                       "one by chance; ask for more cells (output.resolution)",
+                 notes);
     explain_null("tributary_angles", summary["tributary_angles"], "a mean needs a junction, its spread two", notes);
     summary["notes"] = notes;
     return summary;
@@ -155,16 +185,29 @@ void check_outputs(Experiment e) {
     check_terrain_files(e);
 }
 
-void warn(const GrownTerrain& t, const Messages& messages) {
+void warn(const Experiment& e, const GrownTerrain& t, const Messages& messages) {
     const double density = grow::total_length(t.growth.network) / grow::total_area(t.growth.network);
     const double wanted = 1 / t.dials.channel_maintenance_m;
     if (t.dials.stop == grow::Stop::density && density < 0.99 * wanted) {
         messages.warning(fmt::format("the drainage density came to {:.4g} per metre, not {:.4g}: {}", density, wanted,
                                      name_of(t.growth.stopped)));
     }
+    if (const Index flat = sides_flatter_than_channels(t); flat > 0) {
+        messages.warning(
+            fmt::format("{} of {} valley sides are less steep than their channel: water on them runs beside it and not "
+                        "to it; give a "
+                        "smaller growth.flint_p or steeper growth.sidewall_angle_deg",
+                        flat, 2 * t.growth.network.size()));
+    }
+    if (const Banks banks = banks_of(e, t); banks.beyond > 0) {
+        messages.warning(
+            fmt::format("{:.2g} % of the places on channels' banks lie beyond their valley side and are left out of "
+                        "the mesh: give a "
+                        "smaller growth.channel_width_m or growth.channel_width_exponent",
+                        100.0 * static_cast<double>(banks.beyond) / static_cast<double>(banks.all)));
+    }
     const double cell = t.elevation.grid.east_west[0];
-    std::vector<double> lengths = t.growth.network.length_m;
-    const double median = quantile(std::move(lengths), 0.5);
+    const double median = median_link_m(t);
     if (cell > median / 5) {
         messages.warning(fmt::format(
             "cells of {:.3g} m are coarse for links of {:.3g} m: the raster does not show every valley; "
@@ -173,10 +216,22 @@ void warn(const GrownTerrain& t, const Messages& messages) {
     }
 }
 
+/// Where not even the steepest valley side is as steep as exterior links, all water would run beside these.
+void check_slopes(const grow::Dials& dials) {
+    grow::check_dials(dials);
+    const double steepest_deg = dials.sidewall_angle_deg + dials.delta_sidewall_angle_deg;
+    const double steepest = std::tan(steepest_deg / degrees_per_radian);
+    if (dials.flint.p < steepest) return;
+    throw Error(
+        fmt::format("growth.flint_p is {}, so exterior links are steeper than the steepest valley sides ({:.3g}, of {} "
+                    "degrees), from which no water would come to them: give a smaller one, or steeper sides",
+                    dials.flint.p, steepest, steepest_deg));
+}
+
 std::string write_all(Experiment e, const GrownTerrain& t, const std::filesystem::path& folder,
                       const Messages& messages) {
     messages.progress("measuring and writing");
-    warn(t, messages);
+    warn(e, t, messages);
     const Stopwatch writing;
     const Measured m = measured(t);
     Json summary = summary_json(t, m);
@@ -205,7 +260,7 @@ std::string write_all(Experiment e, const GrownTerrain& t, const std::filesystem
 
 std::string grow(const Experiment& e, const std::filesystem::path& folder, const Messages& messages) {
     check_outputs(e);
-    dials_of(e);
+    check_slopes(dials_of(e));
     return write_all(e, grown_terrain(e, growth_site(e, messages), messages), folder, messages);
 }
 

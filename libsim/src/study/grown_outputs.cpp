@@ -64,8 +64,8 @@ bool is_inside(const grow::Network& network, std::span<const Index> polygon, con
     return inside;
 }
 
-/// Along both banks of a link, at most `spacing_m` apart; where a valley side is narrower than half the channel, none.
-void add_banks(const Experiment& e, const grow::Network& network, Index link, double spacing_m, PointsOnce& points) {
+/// Along both banks of a link, at most `spacing_m` apart.
+void add_banks(const Experiment& e, const grow::Network& network, Index link, double spacing_m, Banks& banks) {
     const double half_width = channel_width_m(e, network.magnitude[link]) / 2;
     const Point& lower = network.vertices[network.lower[link]];
     const Point& upper = network.vertices[network.upper[link]];
@@ -77,7 +77,12 @@ void add_banks(const Experiment& e, const grow::Network& network, Index link, do
             const double share = (k + 0.5) / count;
             const double aside = (side == grow::Side::left ? half_width : -half_width) / length;
             const Point bank{lower.x + share * along.x - aside * along.y, lower.y + share * along.y + aside * along.x};
-            if (is_inside(network, network.polygon(link, side), bank)) points.add(bank);
+            ++banks.all;
+            if (is_inside(network, network.polygon(link, side), bank)) {
+                banks.places.push_back(bank);
+            } else {
+                ++banks.beyond;
+            }
         }
     }
 }
@@ -108,7 +113,7 @@ Table links_layer(const Experiment& e, const GrownTerrain& t) {
         strahler.push_back(tree.strahler[link]);
         shreve.push_back(network.magnitude[link]);
         stream.push_back(network.stream[link]);
-        slope.push_back(tree.drop_m[link] / tree.length_m[link]);
+        slope.push_back(grow::gradient(t.dials.flint, network.magnitude[link]));
         left.push_back(sidewall_deg(network, link, grow::Side::left));
         right.push_back(sidewall_deg(network, link, grow::Side::right));
         width.push_back(channel_width_m(e, network.magnitude[link]));
@@ -225,16 +230,22 @@ std::vector<Point> map_places(const GrowthSite& site, const grow::Network& netwo
     return places;
 }
 
+Banks banks_of(const Experiment& e, const GrownTerrain& t) {
+    Banks banks;
+    if (!(e.growth.channel_width_m > 0)) return banks;
+    for (Index link = 0; link < t.growth.network.size(); ++link) {
+        add_banks(e, t.growth.network, link, surface_spacing_m(t.dials), banks);
+    }
+    return banks;
+}
+
 TriangleSurface triangles_of(const Experiment& e, const GrownTerrain& t) {
     const grow::SurfaceMesh& mesh = t.surface.mesh;
-    const grow::Network& network = t.growth.network;
     PointsOnce places;
     for (Index vertex = 0; vertex < mesh.size(); ++vertex) places.add({mesh.x[vertex], mesh.y[vertex]});
-    if (e.growth.channel_width_m > 0) {
-        const double spacing_m = surface_spacing_m(t.dials);
-        for (Index link = 0; link < network.size(); ++link) add_banks(e, network, link, spacing_m, places);
-    }
+    for (const Point& bank : banks_of(e, t).places) places.add(bank);
     add_middles(mesh, places);
+    const std::vector<double> rough = roughness_at(e, t, places.points());
     const std::span<const Point> added = std::span(places.points()).subspan(mesh.size());
     const auto evaluated = surface::surface_at(t.surface.tension_mesh(), t.surface.patches, added);
     std::vector<std::array<Index, 2>> lines;
@@ -248,10 +259,10 @@ TriangleSurface triangles_of(const Experiment& e, const GrownTerrain& t) {
         surface.z.push_back(height);
     };
     for (Index vertex = 0; vertex < mesh.size(); ++vertex) {
-        put({mesh.x[vertex], mesh.y[vertex]}, mesh.height[vertex]);
+        put({mesh.x[vertex], mesh.y[vertex]}, mesh.height[vertex] + rough[vertex]);
     }
     for (std::size_t i = 0; i < added.size(); ++i) {
-        if (std::isfinite(evaluated[i].height)) put(added[i], evaluated[i].height);
+        if (std::isfinite(evaluated[i].height)) put(added[i], evaluated[i].height + rough[mesh.size() + i]);
     }
     surface.triangles = mesh::triangulate_lines(points, lines);
     return surface;

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "study/grown_outputs.hpp"
 #include "study/growth_frames.hpp"
@@ -83,6 +82,23 @@ GrownSurface surface_over(const Experiment& e, const grow::Network& network, gro
     return s;
 }
 
+surface::FractalRoughness fractal_of(const Experiment& e, const grow::Dials& dials, double cell_m) {
+    return {.amplitude_m = e.growth.roughness_m,
+            .reference_m = surface_spacing_m(dials),
+            .hurst = e.growth.roughness_hurst,
+            .finest_m = e.growth.roughness_finest_m.value_or(cell_m),
+            .seed = dials.seed ^ roughness_seed};
+}
+
+/// Drops as Flint's law makes them: differences of elevations would lose their digits far above the sea.
+channel::StreamNetwork tree_of(const grow::Network& network, const grow::Flint& flint, double base_level_m) {
+    channel::StreamNetwork tree = grow::stream_network(network, grow::elevations(network, flint, base_level_m));
+    for (Index link = 0; link < network.size(); ++link) {
+        tree.drop_m[link] = grow::gradient(flint, network.magnitude[link]) * network.length_m[link];
+    }
+    return tree;
+}
+
 /// On the plane, from the network's origin.
 Raster evaluated(const Experiment& e, const GrownSurface& s, const grow::Dials& dials) {
     constexpr Index usual_resolution = 512;
@@ -91,14 +107,7 @@ Raster evaluated(const Experiment& e, const GrownSurface& s, const grow::Dials& 
     surface::evaluate(s.tension_mesh(), s.patches, raster);
     if (!(e.growth.roughness_m > 0)) return raster;
     if (e.growth.roughness_kind == RoughnessKind::subdivision) {
-        const double finest_m = e.growth.roughness_finest_m.value_or(raster.grid.east_west[0]);
-        surface::add_roughness(plane, ridge_share(s.mesh),
-                               {.amplitude_m = e.growth.roughness_m,
-                                .reference_m = surface_spacing_m(dials),
-                                .hurst = e.growth.roughness_hurst,
-                                .finest_m = finest_m,
-                                .seed = dials.seed ^ roughness_seed},
-                               raster);
+        surface::add_roughness(plane, ridge_share(s.mesh), fractal_of(e, dials, raster.grid.east_west[0]), raster);
         return raster;
     }
     Raster share = raster;
@@ -119,16 +128,6 @@ void put_on_map(const GrowthSite& site, Raster& raster) {
     place.cell_width /= site.unit_m;
     place.cell_height /= site.unit_m;
     place.crs_wkt = site.crs_wkt;
-}
-
-/// The cell with data nearest to the trunk's outlet.
-Index outlet_cell(const GrownTerrain& t) {
-    const Point outlet{t.site.basin.outlet.x / t.site.unit_m, t.site.basin.outlet.y / t.site.unit_m};
-    const Index cell = nearest_cell_with_data(t.elevation, outlet);
-    if (cell == none) {
-        throw Error("output.resolution is too small: no cell's centre lies in the basin; ask for more cells");
-    }
-    return cell;
 }
 
 /// The drainage area from which on the flow paths are as long as wanted.
@@ -181,6 +180,16 @@ std::vector<double> roughness(const Experiment& e, const grow::Dials& dials, std
     return rough;
 }
 
+std::vector<double> roughness_at(const Experiment& e, const GrownTerrain& t, std::span<const Point> places) {
+    const grow::SurfaceMesh& mesh = t.surface.mesh;
+    if (!(e.growth.roughness_m > 0)) return std::vector<double>(places.size(), 0);
+    if (e.growth.roughness_kind == RoughnessKind::subdivision) {
+        return surface::roughness_at(plane_mesh(mesh), ridge_share(mesh),
+                                     fractal_of(e, t.dials, t.elevation.grid.east_west[0]), places);
+    }
+    return roughness(e, t.dials, places, surface::interpolate_linear_at(plane_mesh(mesh), ridge_share(mesh), places));
+}
+
 GrownTerrain grown_terrain(const Experiment& e, GrowthSite site, const Messages& messages) {
     GrownTerrain t;
     t.dials = dials_of(e);
@@ -191,7 +200,7 @@ GrownTerrain grown_terrain(const Experiment& e, GrowthSite site, const Messages&
     const grow::Network& network = t.growth.network;
     if (e.output.frames > 0) t.stages = stages_of(t, e.output.frames);
     t.site.basin.outlet = network.origin;
-    t.tree = grow::stream_network(network, grow::elevations(network, t.dials.flint, t.site.basin.base_level_m));
+    t.tree = tree_of(network, t.dials.flint, t.site.basin.base_level_m);
     t.seconds.grow = growing.seconds();
     messages.progress(fmt::format("drawing the surface over {} links", network.size()));
     const Stopwatch triangulating;
@@ -210,7 +219,7 @@ GrownTerrain grown_terrain(const Experiment& e, GrowthSite site, const Messages&
 
 MeasureOptions measure_options(const GrownTerrain& t) {
     MeasureOptions options;
-    options.catchment_outlet = outlet_cell(t);
+    options.catchment_outlet = outlet_cell(t.elevation, t.site);
     const RasterMeasurement m = measure_raster(t.elevation, options);
     options.channel_area_m2 = area_for_length(m.terrain, grow::total_length(t.growth.network));
     return options;

@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "study/map_plane.hpp"
 #include "thalweg/channel/network.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/io/vector_file.hpp"
 #include "thalweg/mesh/predicates.hpp"
+#include "thalweg/mesh/triangulate.hpp"
 
 namespace thalweg::study {
 namespace {
@@ -32,23 +32,28 @@ struct Drawn {
     std::vector<std::string> warnings = {};
 };
 
-/// What a GeoJSON file without a coordinate system is taken for, though it cannot be: degrees.
-bool beyond_the_globe(const Polygon& outline) {
-    return std::any_of(outline.begin(), outline.end(),
-                       [](const Point& p) { return std::abs(p.x) > 360 || std::abs(p.y) > 90; });
+constexpr const char* cut_by_the_map =
+    "; where ±180° cuts it, draw it in one piece, with longitudes beyond 180 on the other side";
+
+bool is_cut_by_the_map(const io::VectorShapes& shapes) {
+    const auto at_the_cut = [](const PolygonPart& part) {
+        return std::ranges::any_of(part.outer, [](const Point& p) { return std::abs(p.x) == 180; });
+    };
+    return shapes.geographic && shapes.polygons.size() > 1 && std::ranges::all_of(shapes.polygons, at_the_cut);
 }
 
 Drawn outline_in(const fs::path& file) {
     io::VectorShapes shapes = io::read_vectors(file);
     if (shapes.polygons.size() != 1) {
-        throw Error(fmt::format("basin.outline: {} holds {} polygons, and a basin is one", file.string(),
-                                shapes.polygons.size()));
+        throw Error(fmt::format("basin.outline: {} holds {} polygons, and a basin is one{}", file.string(),
+                                shapes.polygons.size(), is_cut_by_the_map(shapes) ? cut_by_the_map : ""));
     }
     PolygonPart& drawn = shapes.polygons.front();
     if (!drawn.holes.empty()) {
         throw Error(fmt::format("basin.outline: the polygon of {} has holes, and a basin has none", file.string()));
     }
     const bool flat = shapes.geographic && beyond_the_globe(drawn.outer);
+    if (shapes.geographic && !flat) drawn.outer = ring_without_jumps("basin.outline", std::move(drawn.outer));
     const std::string crs_wkt = flat ? "" : shapes.crs_wkt;
     Drawn result{.outline = std::move(drawn.outer), .plane = {}, .map_crs_wkt = crs_wkt};
     result.plane = plane_about(result.outline, shapes.geographic && !flat, shapes.unit_m, crs_wkt);
@@ -65,9 +70,7 @@ Drawn drawn_outline(const Shape& shape) {
     if (corners.size() < 3) {
         throw Error(fmt::format("basin.outline has {} corners: a polygon needs at least three", corners.size()));
     }
-    Polygon outline = corners;
-    if (outline.front() == outline.back()) outline.pop_back();
-    return {.outline = std::move(outline), .plane = {}, .map_crs_wkt = ""};
+    return {.outline = corners, .plane = {}, .map_crs_wkt = ""};
 }
 
 std::vector<Point> line_in(const fs::path& file, const std::string& crs_wkt) {
@@ -79,7 +82,7 @@ std::vector<Point> line_in(const fs::path& file, const std::string& crs_wkt) {
     return shapes.lines.front();
 }
 
-/// Outlet and source in map coordinates.
+/// Both ends in map coordinates.
 std::vector<Point> drawn_trunk(const Shape& shape, Drawn& outline) {
     const auto* file = std::get_if<fs::path>(&shape);
     const std::vector<Point> line =
@@ -91,44 +94,52 @@ std::vector<Point> drawn_trunk(const Shape& shape, Drawn& outline) {
     if (line.size() > 2) {
         outline.warnings.push_back("basin.trunk: a trunk is straight, and the bends of the drawn line are left out");
     }
-    return {line.front(), line.back()};
+    const std::vector<Point> ends{line.front(), line.back()};
+    return outline.plane.geographic ? without_jumps(ends, outline.outline.front().x) : ends;
 }
 
-Point nearest_on_outline(const Polygon& outline, const Point& p) {
-    Point nearest = outline[0];
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-        const Point& a = outline[i];
-        const Point& b = outline[(i + 1) % outline.size()];
-        const double square = (b.x - a.x) * (b.x - a.x) + (b.y - a.y) * (b.y - a.y);
-        const double along = (p.x - a.x) * (b.x - a.x) + (p.y - a.y) * (b.y - a.y);
-        const Point on_side = between(a, b, std::clamp(along / square, 0.0, 1.0));
-        if (distance(on_side, p) < distance(nearest, p)) nearest = on_side;
-    }
-    return nearest;
+constexpr double outlet_may_be_off = 0.01;  // of the outline's extent
+constexpr double as_good_as_on = 1e-6;      // of the outline's extent: what `grow::checked_basin` takes for on it
+
+/// How far from the outline, as a share of its extent.
+double share_off(const Polygon& outline, const Point& p) {
+    const auto [low, high] = evolve::bounding_box(outline);
+    return distance(grow::nearest_on_outline(outline, p), p) / distance(low, high);
+}
+
+/// A trunk that was drawn downstream ends at the outline, where no source can be, and does not begin there.
+void turn_if_drawn_downstream(grow::Basin& basin, std::vector<std::string>& warnings) {
+    const double first = share_off(basin.outline, basin.outlet), last = share_off(basin.outline, basin.source);
+    const bool only_last_is_near = first > outlet_may_be_off && last <= outlet_may_be_off;
+    const bool only_last_is_on = first > as_good_as_on && last <= as_good_as_on;
+    if (!only_last_is_near && !only_last_is_on) return;
+    std::swap(basin.outlet, basin.source);
+    warnings.push_back(
+        "basin.trunk: its last place is the one on the outline, so it was drawn downstream and is turned round");
 }
 
 /// A drawn line hardly ever ends exactly on an outline, nor does one on degrees once both lie on a plane.
 void put_outlet_on_outline(grow::Basin& basin, std::vector<std::string>& warnings) {
-    constexpr double farthest = 0.01;  // of the outline's extent
-    const Point nearest = nearest_on_outline(basin.outline, basin.outlet);
-    const double off = distance(nearest, basin.outlet);
-    const auto [low, high] = evolve::bounding_box(basin.outline);
-    if (off > farthest * distance(low, high)) return;  // which is refused then
-    basin.outlet = nearest;
-    if (off > 1e-6 * distance(low, high)) {
-        warnings.push_back(
-            fmt::format("basin.trunk: its outlet lay {:.3g} m off the outline and was put onto it", off));
+    const double share = share_off(basin.outline, basin.outlet);
+    if (share > outlet_may_be_off) return;  // which is refused then
+    const Point nearest = grow::nearest_on_outline(basin.outline, basin.outlet);
+    if (share > as_good_as_on) {
+        warnings.push_back(fmt::format("basin.trunk: its outlet lay {:.3g} m off the outline and was put onto it",
+                                       distance(nearest, basin.outlet)));
     }
+    basin.outlet = nearest;
 }
 
 GrowthSite drawn_site(const Experiment& e) {
     if (!e.basin.trunk) throw Error("basin.trunk is needed: a line [[x, y], [x, y]] from the outlet to a source");
     Drawn drawn = drawn_outline(*e.basin.outline);
+    drawn.outline = mesh::simple_polygon(drawn.outline);  // here, where places are still those of the map
     const std::vector<Point> trunk = drawn.plane.from_map(drawn_trunk(*e.basin.trunk, drawn));
     grow::Basin basin{.outline = drawn.plane.from_map(drawn.outline),
                       .outlet = trunk[0],
                       .source = trunk[1],
                       .base_level_m = e.basin.base_level_m.value_or(0)};
+    turn_if_drawn_downstream(basin, drawn.warnings);
     put_outlet_on_outline(basin, drawn.warnings);
     return {.basin = grow::checked_basin(basin),
             .unit_m = drawn.plane.geographic ? 1 : drawn.plane.unit_m,
@@ -190,6 +201,17 @@ bool is_trunk(const grow::Basin& basin) {
     }
 }
 
+/// Throws Error that says how many cells it takes for two across the basin.
+[[noreturn]] void refuse_narrow_basin(const Raster& raster, const GrowthSite& site) {
+    const auto [low, high] = evolve::bounding_box(site.basin.outline);
+    const double longer = std::max(high.x - low.x, high.y - low.y);
+    const double width = std::abs(mesh::polygon_area(site.basin.outline)) / distance(low, high);
+    throw Error(
+        fmt::format("the basin is narrower ({:.3g} m) than a cell ({:.3g} m), and none has its centre inside: ask for "
+                    "output.resolution = {:.0f} or more",
+                    width, raster.grid.east_west[0], std::ceil(2 * longer / width)));
+}
+
 }  // namespace
 
 GrowthSite growth_site(const Catchment& c) {
@@ -207,7 +229,7 @@ GrowthSite growth_site(const Catchment& c) {
                     .unit_m = plane.geographic ? 1 : plane.unit_m,
                     .crs_wkt = plane.crs_wkt,
                     .warnings = {}};
-    site.basin.outlet = nearest_on_outline(site.basin.outline, line.front());
+    site.basin.outlet = grow::nearest_on_outline(site.basin.outline, line.front());
     // No more than some hundred places are tried: a stream is seen in stretches, not in single cells.
     const std::size_t step = std::max<std::size_t>(1, line.size() / 400);
     for (std::size_t at = line.size() - 1; at > 0; at -= std::min(at, step)) {
@@ -245,6 +267,13 @@ GrowthSite growth_site(const Experiment& e, const Messages& messages) {
     }
     for (const std::string& warning : site.warnings) messages.warning(warning);
     return site;
+}
+
+Index outlet_cell(const Raster& raster, const GrowthSite& site) {
+    const Point outlet{site.basin.outlet.x / site.unit_m, site.basin.outlet.y / site.unit_m};
+    const Index nearest = nearest_cell_with_data(raster, outlet);
+    if (nearest == none) refuse_narrow_basin(raster, site);
+    return nearest;
 }
 
 grow::Dials dials_of(const Experiment& e) {

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "study/map_plane.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "thalweg/core/error.hpp"
 #include "thalweg/io/polygonize.hpp"
 
 namespace thalweg::study {
@@ -23,17 +26,38 @@ std::vector<Point> MapPlane::to_map(std::vector<Point> points) const {
 MapPlane plane_of(const Raster& raster) {
     const Placement& place = raster.placement;
     const Point middle = place.center(raster.grid.rows / 2, raster.grid.cols / 2);
-    return plane_about({middle}, place.geographic,
-                       place.geographic ? 1 : raster.grid.east_west[0] / place.cell_width, place.crs_wkt);
+    return plane_about({middle}, place.geographic, place.geographic ? 1 : raster.grid.east_west[0] / place.cell_width,
+                       place.crs_wkt);
+}
+
+bool beyond_the_globe(const std::vector<Point>& places) {
+    return std::ranges::any_of(places, [](const Point& p) { return std::abs(p.x) > 360 || std::abs(p.y) > 90; });
+}
+
+std::vector<Point> without_jumps(std::vector<Point> lon_lat_deg, double near_deg) {
+    for (Point& p : lon_lat_deg) {
+        if (std::abs(p.x - near_deg) > 180) p.x -= 360 * std::round((p.x - near_deg) / 360);
+        near_deg = p.x;
+    }
+    return lon_lat_deg;
+}
+
+Polygon ring_without_jumps(const std::string& what, Polygon lon_lat_deg) {
+    const double first = lon_lat_deg.front().x;
+    Polygon ring = without_jumps(std::move(lon_lat_deg), first);
+    if (std::abs(ring.back().x - ring.front().x) <= 180) return ring;
+    throw Error(
+        fmt::format("{} goes around a pole: bring it to a polar map first, e.g. by ogr2ogr -t_srs EPSG:3413", what));
 }
 
 MapPlane plane_about(const std::vector<Point>& places, bool geographic, double unit_m, const std::string& crs_wkt) {
     if (!geographic) return {.unit_m = unit_m, .crs_wkt = crs_wkt};
-    const auto [west, east] = std::minmax_element(places.begin(), places.end(),
-                                                  [](const Point& a, const Point& b) { return a.x < b.x; });
-    const auto [south, north] = std::minmax_element(places.begin(), places.end(),
-                                                    [](const Point& a, const Point& b) { return a.y < b.y; });
-    const io::LocalPlane local{.longitude_deg = (west->x + east->x) / 2, .latitude_deg = (south->y + north->y) / 2};
+    const auto [west, east] =
+        std::minmax_element(places.begin(), places.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
+    const auto [south, north] =
+        std::minmax_element(places.begin(), places.end(), [](const Point& a, const Point& b) { return a.y < b.y; });
+    const io::LocalPlane local{.longitude_deg = std::remainder((west->x + east->x) / 2, 360),
+                               .latitude_deg = (south->y + north->y) / 2};
     return {.local = local, .geographic = true, .crs_wkt = local.crs_wkt()};
 }
 

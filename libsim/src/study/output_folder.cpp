@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/study/output_folder.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -20,6 +22,15 @@ namespace {
 
 fs::path hidden_neighbour(const fs::path& final, const char* what) {
     return final.parent_path() / fmt::format(".{}.{}-{}", final.filename().string(), what, ::getpid());
+}
+
+/// An open descriptor that holds a folder's lock; −1 if somebody else has it, or there is no such lock.
+int locked(const fs::path& folder) {
+    const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC | O_NOFOLLOW);
+    if (descriptor < 0) return -1;
+    if (::flock(descriptor, LOCK_EX | LOCK_NB) == 0) return descriptor;
+    ::close(descriptor);
+    return -1;
 }
 
 /// Names everything in a folder of results, so that it can be told later what is ours to delete.
@@ -58,16 +69,31 @@ OutputFolder::OutputFolder(fs::path final, IfPresent if_present)
     : given_(std::move(final)), final_(final_place(given_)), if_present_(if_present) {
     check();
     partial_ = hidden_neighbour(final_, "partial");
+    make_partial();
+}
+
+void OutputFolder::make_partial() {
     for (fs::path parent = final_.parent_path(); !parent.empty() && !fs::exists(parent);
          parent = parent.parent_path()) {
         created_parents_.push_back(parent);
     }
     std::error_code problem;
-    fs::create_directories(partial_, problem);
+    fs::create_directories(final_.parent_path(), problem);
+    if (!problem && fs::is_directory(partial_)) {  // of a process that had this one's number
+        const int left = locked(partial_);
+        if (left < 0) {
+            throw Error(fmt::format("another process is writing '{}' just now; wait for it or name another folder",
+                                    given_.string()));
+        }
+        fs::remove_all(partial_, problem);
+        ::close(left);
+    }
+    if (!problem) fs::create_directory(partial_, problem);
     if (problem) {
         discard();
         throw Error(fmt::format("cannot write into '{}': {}", final_.parent_path().string(), problem.message()));
     }
+    lock_ = locked(partial_);  // where a file system knows no locks, the process' number alone tells that it lives
 }
 
 void OutputFolder::check() const {
@@ -91,6 +117,7 @@ void OutputFolder::check() const {
 
 OutputFolder::~OutputFolder() {
     if (!committed_) discard();
+    if (lock_ >= 0) ::close(lock_);
 }
 
 void OutputFolder::discard() {
@@ -120,7 +147,8 @@ void OutputFolder::commit() {
     fs::remove_all(aside, problem);
 }
 
-void remove_abandoned(const fs::path& final) {
+std::vector<std::string> remove_abandoned(const fs::path& final) {
+    std::vector<std::string> removed;
     const fs::path place = final_place(final);
     const std::string prefix = fmt::format(".{}.partial-", place.filename().string());
     std::error_code ignored;
@@ -131,8 +159,16 @@ void remove_abandoned(const fs::path& final) {
         int process = 0;
         const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), process);
         const bool ours = problem == std::errc() && end == number.data() + number.size() && process > 0;
-        if (ours && ::kill(process, 0) != 0 && errno == ESRCH) fs::remove_all(entry.path(), ignored);
+        if (!ours || entry.is_symlink() || ::kill(process, 0) == 0 || errno != ESRCH) continue;
+        const int lock = locked(entry.path());
+        if (lock < 0) continue;  // of a living process on another machine or in another container
+        std::error_code failed;
+        fs::remove_all(entry.path(), failed);
+        ::close(lock);
+        if (!failed) removed.push_back(name);
     }
+    std::sort(removed.begin(), removed.end());
+    return removed;
 }
 
 void write_text(const fs::path& path, const std::string& text) {

@@ -36,12 +36,15 @@ FileKind kind_of(const std::filesystem::path& out, const RenderOptions& options)
     return FileKind::svg;
 }
 
+Index samples_of(const RenderOptions& o) { return o.samples.value_or(16); }
+Index lines_of(const RenderOptions& o) { return o.lines.value_or(50); }
+
 /// What only the paper's colours show, and what excludes each other.
 void check_colors(const RenderOptions& o) {
     const auto refuse = [](const char* option) {
         throw Error(fmt::format("{} shows in the colours 'kelley' only: use --color kelley, or leave it out", option));
     };
-    if (o.color != PictureColor::kelley) {
+    if (o.color.value_or(PictureColor::clay) != PictureColor::kelley) {
         if (o.network) refuse("--network");
         if (o.channel_area_m2) refuse("--channel-area-m2");
         if (o.tree_line_m) refuse("--tree-line-m");
@@ -52,20 +55,42 @@ void check_colors(const RenderOptions& o) {
     }
 }
 
-void check(const RenderOptions& o) {
+/// What was given and the picture would not show.
+void check_shown(const RenderOptions& o, FileKind kind) {
+    const auto refuse = [](bool given, const char* option, const char* where) {
+        if (given) throw Error(fmt::format("{} does not show in {}: leave it out", option, where));
+    };
+    if (o.style == PictureStyle::surface) return refuse(o.lines.has_value(), "--lines", "a surface, which has none");
+    refuse(o.sides.has_value(), "--sides", "wireframe and polygons, which have none");
+    if (o.style == PictureStyle::wireframe) {
+        refuse(o.color.has_value(), "--color", "a wireframe of one colour");
+        refuse(o.sun_azimuth.has_value(), "--sun-azimuth", "a wireframe without light");
+        refuse(o.sun_elevation.has_value(), "--sun-elevation", "a wireframe without light");
+        refuse(o.samples.has_value(), "--samples", "a wireframe, which is drawn without rays");
+        refuse(o.background.has_value(), "--background", "a wireframe, which lies on white");
+    }
+    if (kind == FileKind::svg) {
+        refuse(o.samples.has_value(), "--samples", "an .svg, which is drawn without rays");
+        refuse(o.background.has_value(), "--background", "an .svg, which has none");
+    }
+}
+
+void check(const RenderOptions& o, FileKind kind) {
     if (!(o.vertical_exaggeration >= 1e-6 && o.vertical_exaggeration <= 1e6)) {
         throw Error(fmt::format("the vertical exaggeration must be from 1e-6 to 1e6, not {}", o.vertical_exaggeration));
     }
-    if (!std::isfinite(o.sun_azimuth) || !std::isfinite(o.sun_elevation)) {
+    if (!std::isfinite(o.sun_azimuth.value_or(0)) || !std::isfinite(o.sun_elevation.value_or(0))) {
         throw Error("the sun's bearing and height must be finite numbers of degrees");
     }
-    if (o.samples == 0 || o.samples > 4096) throw Error(fmt::format("{} samples per pixel: 1 to 4096", o.samples));
-    if (o.lines < 2 || o.lines > 2000) throw Error(fmt::format("{} lines: from 2 to 2000 make a grid", o.lines));
+    const Index samples = samples_of(o), lines = lines_of(o);
+    if (samples == 0 || samples > 4096) throw Error(fmt::format("{} samples per pixel: 1 to 4096", samples));
+    if (lines < 2 || lines > 2000) throw Error(fmt::format("{} lines: from 2 to 2000 make a grid", lines));
+    check_shown(o, kind);
     check_colors(o);
 }
 
 std::vector<render::Rgb> colors(const Raster& raster, const LocalMetres& local, const RenderOptions& o) {
-    if (o.color == PictureColor::clay) return render::clay_colors(raster.values.size());
+    if (o.color.value_or(PictureColor::clay) == PictureColor::clay) return render::clay_colors(raster.values.size());
     if (o.color == PictureColor::elevation) return render::elevation_colors(raster.values);
     const std::vector<double> water =
         o.network ? water_of_lines(raster, *o.network) : water_of_flow(raster, o.channel_area_m2);
@@ -108,14 +133,15 @@ render::Model model_of(const Raster& raster, const RenderOptions& o) {
     if (model.ground.triangles.empty()) {
         throw Error("there is nothing to draw: no neighbouring cells have data");
     }
-    if (o.sides == PictureSides::block && o.style == PictureStyle::surface) {
+    if (o.sides.value_or(PictureSides::block) == PictureSides::block && o.style == PictureStyle::surface) {
         model.sides = sides_of(model.ground, raster.grid, local);
     }
     return model;
 }
 
 render::Light light_of(const RenderOptions& o) {
-    return {.to_sun = render::direction(o.sun_azimuth, o.sun_elevation),
+    constexpr double degree = std::numbers::pi / 180;
+    return {.to_sun = render::direction(o.sun_azimuth.value_or(305 * degree), o.sun_elevation.value_or(40 * degree)),
             .sun = {0.95f, 0.90f, 0.80f},
             .sky = {0.32f, 0.37f, 0.46f}};
 }
@@ -139,7 +165,7 @@ std::string draw_lines(const Raster& raster, const render::Model& model, const r
         return render::svg_of(camera.width, camera.height, facets, strokes, line_width);
     }
     render::Picture picture{.width = camera.width, .height = camera.height, .light = {}, .coverage = {}};
-    if (filled) picture = render::trace(model, camera, light_of(o), {.samples = o.samples, .sky_rays = 4});
+    if (filled) picture = render::trace(model, camera, light_of(o), {.samples = samples_of(o), .sky_rays = 4});
     picture.light.resize(std::size_t{camera.width} * camera.height);
     picture.coverage.resize(picture.light.size());
     render::draw(picture, strokes, line_width, render::from_srgb(0x222222));
@@ -154,18 +180,18 @@ std::string render_dem(const std::filesystem::path& dem, const std::filesystem::
                        const Messages& messages) {
     constexpr double most_cells = 4e6;
     const FileKind kind = kind_of(out, o);
-    check(o);
+    check(o, kind);
     messages.progress("reading");
     Raster raster = read_dem(dem, o.read, messages).raster;
     const Index longer = std::max(raster.grid.rows, raster.grid.cols);
     const double share = std::sqrt(most_cells / std::max(most_cells, double(raster.grid.size())));
     const bool pixels = o.style == PictureStyle::surface;
-    raster = coarser(raster, pixels ? static_cast<Index>(std::max(2.0, longer * share)) : o.lines);
+    raster = coarser(raster, pixels ? static_cast<Index>(std::max(2.0, longer * share)) : lines_of(o));
     const render::Model model = model_of(raster, o);
     const render::Camera camera = render::fitting_camera(o.view, model.ground, model.sides);
     messages.progress("drawing");
     if (!pixels) return draw_lines(raster, model, camera, kind, o);
-    return png_of(render::trace(model, camera, light_of(o), {.samples = o.samples, .sky_rays = 4}), o);
+    return png_of(render::trace(model, camera, light_of(o), {.samples = samples_of(o), .sky_rays = 4}), o);
 }
 
 std::string render_summary(const std::filesystem::path& out, const RenderOptions& o) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "thalweg/study/compare.hpp"
 #include "thalweg/study/fit_growth.hpp"

@@ -59,6 +59,20 @@ void interpolate_linear(const Mesh& mesh, std::span<const double> node_values, R
     });
 }
 
+std::vector<double> interpolate_linear_at(const Mesh& mesh, std::span<const double> node_values,
+                                          std::span<const Point> points) {
+    check_one_value_per_node(mesh, node_values);
+    std::vector<double> values(points.size(), std::numeric_limits<double>::quiet_NaN());
+    const std::vector<Index> triangle = triangle_of_points(plane_of(mesh), points);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (triangle[i] == none) continue;
+        const std::array<Index, 3>& t = mesh.triangles[triangle[i]];
+        values[i] = interpolate({node_values[t[0]], node_values[t[1]], node_values[t[2]]},
+                                TriangleTest(plane_of(mesh), t).coordinates(points[i]));
+    }
+    return values;
+}
+
 std::vector<Index> nearest_node(const Mesh& mesh, const Raster& raster) {
     std::vector<Index> nearest(raster.grid.size(), none);
     cover(plane_of(mesh), raster, [&](const Claim& claim) {

@@ -41,6 +41,9 @@ struct ValleySide {
 /// and n the horizontal normal into the interfluve. Both planes hold the junction, so they meet in a straight line; the
 /// divide is its half that lies between the links, kept a tenth of their angle away from both, for a divide along a
 /// link would leave that side nothing. Where no half lies between them, it bisects their angle.
+///
+/// A link steeper than its valley side (S > tan β) lies in no plane that is as flat: the root is taken as 0, the side
+/// then falls along its link alone, with the link's gradient, and water on it runs beside the link and not to it.
 double divide_direction(const ValleySide& first, const ValleySide& second);
 
 }  // namespace thalweg::grow

@@ -16,8 +16,9 @@ bool segments_cross(const Point& a, const Point& b, const Point& c, const Point&
 /// Whether no two sides of the ring cross or touch but neighbours at their corner; exact. Cost: n log n.
 bool is_simple(const Polygon&);
 
-/// The polygon, counter-clockwise.
-/// Throws Error if it is not a simple polygon of positive area with finite corners.
+/// The polygon, counter-clockwise, without corners that repeat the one before (the last one's is the first), as many
+/// programs write them.
+/// Throws Error if it is not a simple polygon of positive area with finite corners, and says where it meets itself.
 Polygon simple_polygon(const Polygon&);
 
 /// The rings of a part: the outer one counter-clockwise, then its holes clockwise.

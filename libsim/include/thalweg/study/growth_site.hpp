@@ -28,6 +28,9 @@ GrowthSite growth_site(const Experiment&, const Messages&);
 /// either side.
 GrowthSite growth_site(const Catchment&);
 
+/// The cell with data of a terrain on this site whose centre is nearest to the outlet. Throws Error if none has data.
+Index outlet_cell(const Raster&, const GrowthSite&);
+
 /// The dials of an experiment. Throws Error where the constant of channel maintenance is missing.
 grow::Dials dials_of(const Experiment&);
 

@@ -298,13 +298,11 @@ void describe_growth(AnyExperiment& e, Visit& visit) {
           g.extra_tension_divide);
     visit(Field{"growth.extra_tension_side", "", "the same for edges across valley sides", 0, 1e6},
           g.extra_tension_side);
-    visit(
-        Field{"growth.channel_width_m", "m", "width of an exterior link's channel; 0: channels are lines", 0, infinity},
-        g.channel_width_m);
+    visit(Field{"growth.channel_width_m", "m", "width of an exterior link's channel; 0: channels are lines", 0, 1e6},
+          g.channel_width_m);
     visit(Field{"growth.channel_width_exponent", "", "exponent of that width with the magnitude", 0, 2},
           g.channel_width_exponent);
-    visit(Field{"growth.roughness_m", "m", "height of the surface's small roughness; 0: none", 0, infinity},
-          g.roughness_m);
+    visit(Field{"growth.roughness_m", "m", "height of the surface's small roughness; 0: none", 0, 1e5}, g.roughness_m);
     visit(
         Field{"growth.roughness_kind", "", "octaves of noise, or a fractal by subdivision of the surface's triangles"},
         g.roughness_kind);

@@ -20,19 +20,21 @@ enum class PictureColor { clay, kelley, elevation };
 enum class PictureSides { block, none };
 enum class PictureBackground { sky, white };
 
-/// How to draw a terrain. Angles in radians.
+/// How to draw a terrain. Angles in radians. What is given though the picture would not show it is refused: lines of a
+/// surface; light, colours, samples, sides or background of a wireframe; samples, sides or background of polygons as
+/// far as their file has none.
 struct RenderOptions {
     io::ReadOptions read;
     render::View view;
-    double sun_azimuth = 305 * std::numbers::pi / 180;   ///< bearing of the sun
-    double sun_elevation = 40 * std::numbers::pi / 180;  ///< above the horizon
-    double vertical_exaggeration = 1;                    ///< > 0
+    double vertical_exaggeration = 1;  ///< > 0
     PictureStyle style = PictureStyle::surface;
-    PictureColor color = PictureColor::clay;
-    PictureSides sides = PictureSides::block;
-    PictureBackground background = PictureBackground::sky;
-    Index samples = 16;                            ///< rays per pixel
-    Index lines = 50;                              ///< of wireframe and polygons, along the longer side
+    std::optional<double> sun_azimuth;             ///< bearing of the sun; default 305°
+    std::optional<double> sun_elevation;           ///< above the horizon; default 40°
+    std::optional<PictureColor> color;             ///< default clay
+    std::optional<PictureSides> sides;             ///< default a block
+    std::optional<PictureBackground> background;   ///< default the sky
+    std::optional<Index> samples;                  ///< rays per pixel; default 16
+    std::optional<Index> lines;                    ///< along the longer side; default 50
     std::optional<std::filesystem::path> network;  ///< channels to paint; default: those of the DEM's own flow
     std::optional<double> channel_area_m2;         ///< drainage area where these begin
     std::optional<double> tree_line_m, snow_line_m;

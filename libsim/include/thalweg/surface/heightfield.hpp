@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "thalweg/core/mesh.hpp"
 #include "thalweg/core/raster.hpp"
@@ -19,6 +20,9 @@ Raster covering_raster(const Mesh&, Index resolution);
 /// the domain. A centre on an edge takes the triangle listed first, so the result does not depend on the threads; the
 /// value at a node's place is the node's. Cost: cells plus triangles. Throws Error unless there is one value per node.
 void interpolate_linear(const Mesh&, std::span<const double> node_values, Raster&);
+
+/// The same at single places.
+std::vector<double> interpolate_linear_at(const Mesh&, std::span<const double> node_values, std::span<const Point>);
 
 /// Mean of the node values weighted by exp(−d²/2σ²), d the distance to the node, on the centres of the raster's cells;
 /// NaN outside the domain. Nodes count up to where their weight is e^−12.5 (4e-6) of the nearest node's, so that a cell
