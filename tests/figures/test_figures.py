@@ -238,9 +238,9 @@ class Figures(unittest.TestCase):
         axes = Figure().add_subplot()
         curves.draw_slope_area(axes, side)
         drawn = {line.get_label(): list(line.get_xdata()) for line in axes.lines}
-        self.assertEqual(drawn["bins of one piece alone, error not known"], [4e6])
+        self.assertEqual(drawn["bin of one piece: error not known"], [4e6])
         self.assertEqual([text.get_text() for text in axes.get_legend().get_texts()],
-                         ["bins of one piece alone, error not known", "one: bin means ± 1 s.e."])
+                         ["bin of one piece: error not known", "one: bin means ± 1 s.e."])
 
     def test_terrains_without_common_coordinates_are_drawn_in_kilometres_from_their_middles(self):
         folder = self.changeable()

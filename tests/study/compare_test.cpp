@@ -10,6 +10,7 @@
 
 #include "support/temp_folder.hpp"
 #include "support/terrains.hpp"
+#include "thalweg/study/grow.hpp"
 
 using namespace thalweg;
 using namespace thalweg::study;
@@ -252,6 +253,15 @@ TEST_CASE("The finer of two rasters is brought to the coarser one's cells, which
     CHECK(distance(ab, "hypsometry") == Approx(distance(ba, "hypsometry")).margin(1e-12));
 }
 
+TEST_CASE("A warning tells where larger cells leave hardly any of a terrain", "[compare][cells]") {
+    const TempFolder temp;
+    const auto fine = rough_terrain(temp, "fine.tif", 60, 10), coarse = rough_terrain(temp, "coarse.tif", 60, 30);
+    std::string warnings;
+    std::filesystem::create_directories(temp / "out");
+    compare(coarse, fine, {}, temp / "out", {.warning = [&](const std::string& text) { warnings += text + "\n"; }});
+    CHECK(warnings.find("'fine.tif' has 20 rows x 20 columns left") != std::string::npos);
+}
+
 TEST_CASE("Each side may keep its own cells, and then a note tells", "[compare][cells]") {
     const TempFolder temp;
     const auto fine = rough_terrain(temp, "fine.tif", 120, 10), coarse = rough_terrain(temp, "coarse.tif", 40, 30);
@@ -289,4 +299,25 @@ TEST_CASE("A finer terrain of which only the measures are left is warned of", "[
     const std::string advice = "give the DEM that '" + folder.string() + "' was measured on";
     CHECK(std::ranges::count_if(warnings, [&](const auto& text) { return text.find(advice) != std::string::npos; }) ==
           1);
+}
+
+TEST_CASE("A grown terrain on larger cells still leaves at its outlet alone, so that all of it counts",
+          "[compare][cells]") {
+    const TempFolder temp;
+    Experiment e;
+    e.basin.outline = std::vector<Point>{{0, 0}, {4000, 500}, {3000, 5000}, {-1000, 4000}};
+    e.basin.trunk = std::vector<Point>{{0, 0}, {1500, 3500}};
+    e.growth.channel_maintenance_m = 400;
+    e.output.resolution = 200;
+    std::filesystem::create_directories(temp / "grown");
+    study::grow(e, temp / "grown", {});
+    const auto coarse = rough_terrain(temp, "coarse.tif", 60, 60);
+    const Json ab = compared(temp, temp / "grown", coarse, 1e5);
+    CHECK(ab["cells"]["resampled"] == "a");
+    CHECK(ab["cells"]["a_before_m"] == Approx(25.0));
+    CHECK(ab["cells"]["a_m"].get<double>() == Approx(60).epsilon(0.02));
+    CHECK(ab["a"]["channels"]["share_used"] == 1.0);
+    CHECK(ab["a"]["channels"]["outlets"] == 1);
+    const double basin_m2 = 1.775e+07;  // by the shoelace formula
+    CHECK(ab["a"]["channels"]["basin_area_m2"].get<double>() == Approx(basin_m2).epsilon(0.01));
 }

@@ -69,7 +69,7 @@ def draw_hypsometry(axes, sides):
 
 def draw_slope_area(axes, side, fit=None, regression=None, theory=None, remark=""):
     """Cloud, bins with their standard errors, and what is known of the law: fit and regression as (curve, label), the
-    given one as areas and slopes; `remark` stands in the upper right corner."""
+    given one as areas and slopes; `remark` stands in the lower left corner."""
     _draw_cloud(axes, side)
     _draw_bins(axes, side)
     if fit is not None:
@@ -79,14 +79,14 @@ def draw_slope_area(axes, side, fit=None, regression=None, theory=None, remark="
         axes.plot(area, slope, color=style.INK if fit is None else side.look["color"], linewidth=1.2,
                   linestyle=(0, (4, 3)), zorder=5, label=label)
     if remark:
-        axes.text(0.985, 0.985, textwrap.fill(remark, 44), transform=axes.transAxes, ha="right", va="top", fontsize=6.5,
+        axes.text(0.015, 0.015, textwrap.fill(remark, 44), transform=axes.transAxes, ha="left", va="bottom", fontsize=6.5,
                   color=style.MUTED, zorder=7)
     if theory is not None:
         axes.plot(theory[0], theory[1], color=style.THEORY, linewidth=1.0, linestyle=(0, (1, 1.2)), zorder=5,
                   label="steady state, (u/k)$^{1/n}$ A$^{−m/n}$")
     axes.set(xscale="log", yscale="log", xlabel="Drainage area (m²)", ylabel="Slope (m/m)")
     if len(side.cloud[0]) or len(side.bins[0]):
-        axes.legend(loc="lower left")
+        axes.legend(loc="upper right").set_zorder(8)  # slopes fall with area: there it hides least
         for axis in (axes.xaxis, axes.yaxis):
             label_decades(axis)
     else:
@@ -122,7 +122,7 @@ def _draw_bins(axes, side):
                   color=side.look["color"], elinewidth=0.9, capsize=0, zorder=6, label=f"{side.label}: bin means ± 1 s.e.")
     if not known.all():
         axes.plot(area[~known], slope[~known], linestyle="none", marker="x", markersize=4.2, markeredgewidth=1.0,
-                  color=side.look["color"], zorder=6, label="bins of one piece alone, error not known")
+                  color=side.look["color"], zorder=6, label="bin of one piece: error not known")
 
 
 def fitted_curve(fit, table):

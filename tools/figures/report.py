@@ -341,7 +341,10 @@ def _sides_named(definition):
 
 
 ASPECTS = {"slope_area": "Slope–area", "horton": "Horton’s ratios"}
-QUANTITIES = {"theta": "θ, regression", "relief_m": "m", "RB": "<i>R</i><sub>B</sub>"}
+QUANTITIES = {"theta": "θ, regression", "relief_m": "m", "RB": "<i>R</i><sub>B</sub>", "q": "<i>q</i>", "c": "<i>c</i>",
+              "mean length of all links (m)": "mean of all, m", "mean angle (deg)": "mean, °",
+              "area exceedance exponent": "exponent of the areas’ exceedance",
+              "mean distance of the channels from the mouth over the greatest": "mean distance from the mouth over the greatest"}
 
 
 def _aspect_cell(study, aspect, key, footnotes):

@@ -89,6 +89,12 @@ void bring_to_one_size(Side& a, Side& b, const Messages& messages) {
     Raster& raster = finer.raster->raster;
     raster = io::on_larger_cells(raster, std::max(in_a, in_b) / std::min(in_a, in_b));
     if (finer.outlet) finer.outlet = grown_outlet(finer.path, raster);
+    constexpr Index few = 30;
+    if (std::min(raster.grid.rows, raster.grid.cols) >= few) return;
+    messages.warning(
+        fmt::format("'{}' has {} rows x {} columns left on cells as large as the other side's: too few for "
+                    "rivers to be compared; take a finer DEM of the other, or --cells own",
+                    finer.path.filename().string(), raster.grid.rows, raster.grid.cols));
 }
 
 /// One threshold for both: the user's, that of a side measured before, or the larger of the two defaults. Throws Error
