@@ -87,7 +87,7 @@ void run(const Options& options) {
     choose_conditioning(options, measure);
     choose_derivatives(options, measure);
     measure.routing = routings.at(options.routing);
-    if (!options.theta.empty()) measure.theta = parse_number("--theta", options.theta, Sign::positive);
+    if (!options.theta.empty()) measure.theta = parse_theta("--theta", options.theta);
     if (!options.knickpoint_prominence.empty()) {
         measure.knickpoint_prominence_m =
             parse_number("--knickpoint-prominence-m", options.knickpoint_prominence, Sign::positive);
@@ -150,7 +150,7 @@ void add_analyze(CLI::App& app) {
     command->add_option("--heads-snap-m", options->heads_snap,
                         "how far heads may be moved to a river: to the nearest cell with at least half the drainage "
                         "area of any within [default: not at all]");
-    command->add_option("--theta", options->theta, "concavity for chi and ksn [default: 0.45]");
+    command->add_option("--theta", options->theta, "concavity for chi and ksn, at most 2 [default: 0.45]");
     command->add_option("--knickpoint-prominence-m", options->knickpoint_prominence,
                         "height above the steepest concave profile from which a place is a knickpoint [default: 5 % of "
                         "the rivers' relief]");

@@ -175,6 +175,14 @@ double parse_number(const std::string& option, const std::string& text, Sign sig
     return value;
 }
 
+double parse_theta(const std::string& option, const std::string& text) {
+    constexpr double largest = 2;
+    const double theta = parse_number(option, text, Sign::positive);
+    if (theta <= largest) return theta;
+    throw Error(
+        fmt::format("{} must be at most {}, not {}: rivers have a concavity of about 0.45", option, largest, text));
+}
+
 std::uint64_t parse_seed(const std::string& option, const std::string& text) {
     constexpr double largest = 9007199254740992;
     const double value = parse_number(option, text, Sign::not_negative);

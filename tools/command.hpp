@@ -59,6 +59,10 @@ study::Experiment experiment(const ExperimentOptions&);
 enum class Sign { any, positive, not_negative };
 double parse_number(const std::string& option, const std::string& text, Sign);
 
+/// A concavity. Throws Error, naming the option, outside of (0, 2]: rivers have 0.1 to 1, and beyond 2 the powers of
+/// drainage area tell nothing of heights any more.
+double parse_theta(const std::string& option, const std::string& text);
+
 /// A whole number from 0 to 2^53, as `seed` in an experiment file.
 std::uint64_t parse_seed(const std::string& option, const std::string& text);
 

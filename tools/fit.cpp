@@ -40,8 +40,7 @@ study::FitOptions fit_options(const Options& options) {
     fit.fit.n = given("--n", options.n, Sign::positive).value_or(1);
     if (fit.fit.n < 0.3 || fit.fit.n > 5) throw Error("--n must lie between 0.3 and 5, not " + options.n);
     fit.fit.deposition_g = given("--deposition-g", options.deposition_g, Sign::not_negative).value_or(0);
-    fit.fit.theta_fixed = given("--theta-fixed", options.theta_fixed, Sign::positive);
-    if (fit.fit.theta_fixed.value_or(0) > 5) throw Error("--theta-fixed must be at most 5, not " + options.theta_fixed);
+    if (!options.theta_fixed.empty()) fit.fit.theta_fixed = parse_theta("--theta-fixed", options.theta_fixed);
     fit.fit.area_min_m2 = given("--area-min-m2", options.area_min, Sign::not_negative);
     fit.fit.area_max_m2 = given("--area-max-m2", options.area_max, Sign::positive);
     return fit;
@@ -107,7 +106,7 @@ void add_fit(CLI::App& app) {
         ->capture_default_str();
     command->add_option("--area-min-m2", options->area_min, "smallest drainage area in the fit");
     command->add_option("--area-max-m2", options->area_max, "largest drainage area in the fit");
-    command->add_option("--theta-fixed", options->theta_fixed, "hold the concavity m/n at this value");
+    command->add_option("--theta-fixed", options->theta_fixed, "hold the concavity m/n at this value, at most 2");
     command->add_option("--from", options->from, "of a simulation: its mesh nodes, or its raster measured like a DEM")
         ->check(CLI::IsMember({"nodes", "raster"}))
         ->capture_default_str();

@@ -54,6 +54,17 @@ std::string help_of(const CLI::App& app) {
     return used.empty() ? "thalweg --help" : "thalweg " + used.front()->get_name() + " --help";
 }
 
+/// An option with an empty value (as of a variable that a script has not set) is not the same as none.
+void refuse_empty_values(CLI::App& app) {
+    const CLI::Validator some(
+        [](const std::string& value) { return std::string(value.empty() ? "has an empty value" : ""); }, "");
+    for (CLI::App* command : app.get_subcommands([](CLI::App*) { return true; })) {
+        for (CLI::Option* option : command->get_options()) {
+            if (option->get_items_expected_max() > 0) option->check(some);
+        }
+    }
+}
+
 int parse_and_run(int argc, char** argv) {
     CLI::App app{"Thalweg simulates landscapes, measures real ones, fits the one to the other, and compares them."};
     app.name("thalweg");
@@ -66,6 +77,7 @@ int parse_and_run(int argc, char** argv) {
         add(app);
     }
     refuse_unknown_command(app, argc, argv);
+    refuse_empty_values(app);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& help) {
@@ -90,7 +102,7 @@ int main(int argc, char** argv) {
     } catch (const std::bad_alloc&) {
         return fail(users_to_mend, "not enough memory for this size; use a smaller DEM or fewer nodes");
     } catch (const std::filesystem::filesystem_error& error) {
-        return fail(users_to_mend, error.what());
+        return fail(users_to_mend, "'" + error.path1().string() + "' cannot be used: " + error.code().message());
     } catch (const std::exception& error) {
         return fail(ours_to_mend, std::string("a defect of thalweg, please report it: ") + error.what());
     }

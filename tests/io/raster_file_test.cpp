@@ -367,6 +367,26 @@ TEST_CASE("coordinates that cannot be those of the coordinate system are no dama
     CHECK(warned(degrees, "look like degrees"));
 }
 
+TEST_CASE("a raster beyond the edge of a map of the whole earth is said so", "[raster]") {
+    const TempFolder folder;
+    // World Mercator is 40 075 km around: further east it would come around again, further north is no latitude.
+    const auto read = [&](double west, double north) {
+        return io::read_raster(make(folder, "a.tif", {.transform = {west, 30, 0, north, 0, -30}, .crs = "EPSG:3395"}));
+    };
+    for (const auto& [west, north] : {std::pair{1e9, 5e6}, {-3e7, 0.0}, {2.1e7, 100.0}, {5e6, 1e9}}) {
+        const io::ReadResult far = read(west, north);
+        CAPTURE(west, north);
+        REQUIRE(far.warnings.size() == 1);
+        CHECK_THAT(far.warnings[0], Contains("beyond the edge of the earth") && Contains("EPSG:3395"));
+        CHECK(far.raster.grid.east_west[0] == 30);
+    }
+    CHECK_FALSE(warned(read(2.0e7, 100), "beyond"));
+    CHECK_FALSE(warned(read(-2.0e7, -1e6), "beyond"));
+    // Far from the middle of its zone, as DEMs of a wide region are, a plane is stretched and no more.
+    const FileSpec wide{.transform = {-900000, 30, 0, 3.5e6, 0, -30}, .crs = "EPSG:32646"};
+    CHECK_FALSE(warned(io::read_raster(make(folder, "b.tif", wide)), "beyond"));
+}
+
 TEST_CASE("a raster around the earth is said to be cut at its edge", "[raster]") {
     const TempFolder folder;
     const FileSpec whole{.rows = 4, .cols = 8, .transform = {-180, 45, 0, 90, 0, -45}, .crs = "EPSG:4326"};
@@ -453,6 +473,40 @@ TEST_CASE("files that were cut off are refused, not read as zeros", "[raster]") 
     SECTION("ASCII grids") {
         const std::string text = ascii_grid(20, 20, "500000", "4000000", "30");
         CHECK(is_sentence(refusal(folder.text("a.asc", text.substr(0, text.size() * 3 / 4)))));
+    }
+}
+
+TEST_CASE("words in an ASCII grid that are no numbers, and numbers too many or too few, are refused", "[raster]") {
+    const TempFolder folder;
+    const std::string header = "ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 4000000\ncellsize 30\n";
+    const auto refused = [&](const std::string& numbers) {
+        const std::string sentence = refusal(folder.text("a.asc", header + numbers));
+        CHECK(is_sentence(sentence));
+        return sentence;
+    };
+    CHECK_THAT(refused("1 2 3\n4 abc 6\n"), Contains("'abc' in row 2 and column 2") && Contains("NODATA_value"));
+    CHECK_THAT(refused("1 2 12x\n4 5 6\n"), Contains("'12x' in row 1 and column 3"));
+    for (const std::string word : {"-", ".", "1e", "1.2.3", "0x1F", "*", "--5", "12,5,1", "NULL", "nano", "1d5"}) {
+        CHECK_THAT(refused("1 2 3 4 5 " + word), Contains("'" + word + "' in row 2 and column 3"));
+    }
+    CHECK_THAT(refused("1 2 3 4\n5 6 7 8\n"), Contains("8 numbers") && Contains("2 rows of 3"));
+    CHECK_THAT(refused("1 2 3\n4 5\n"), Contains("5 numbers"));
+    CHECK_THAT(refused(""), Contains("cut off"));
+    const auto heights = [&](const std::string& text) {
+        return io::read_raster(folder.text("a.asc", text)).raster.values;
+    };
+    CHECK(same(heights(header + "NODATA_value -9999\n1.5 -2 +3\n4e2 5.E-1 -9999"), {1.5, -2, 3, 400, 0.5, no_value}));
+    CHECK(same(heights(header + "1,5 nan 3\r\n\r\n4 -1.#IND 6\r\n"), {1.5, no_value, 3, 4, no_value, 6}));
+    CHECK(
+        same(heights("north: 60\nsouth: 0\neast: 90\nwest: 0\nrows: 2\ncols: 3\n1 2 3\n4 5 6\n"), {1, 2, 3, 4, 5, 6}));
+    SECTION("wherever in a long file the word stands") {
+        std::string text = ascii_grid(500, 900, "500000", "4000000", "30");  // 3 MB, more than is read at once
+        CHECK(io::read_raster(folder.text("a.asc", text)).raster.values[449999] == 450099);
+        for (std::size_t at = (1 << 20) - 12; at < (1 << 20) + 12; ++at) {
+            std::string broken = text;
+            broken[at] = 'x';
+            CHECK_THAT(refusal(folder.text("b.asc", broken)), Contains("x") && Contains("is no number"));
+        }
     }
 }
 

@@ -141,6 +141,25 @@ TEST_CASE("A plane on other cells is the same plane, and the sea does not bleed 
     }
 }
 
+TEST_CASE("Cells of a size that leaves no terrain, or more than can be held, are refused with what to give",
+          "[window]") {
+    const TempFolder temp;
+    const auto path = write(temp, plane);  // 1200 m high, 1500 m wide
+    const auto refusal = [&](double cell_m, const std::string& system = "") {
+        const std::string sentence = error_of([&] { io::read_raster(path, {.reproject = system, .cell_m = cell_m}); });
+        CHECK(test::is_sentence(sentence));
+        return sentence;
+    };
+    CHECK_THAT(refusal(1e9),
+               Contains("1 x 1") && Contains("1200 m high and 1500 m wide") && Contains("at most 4.8e+02"));
+    CHECK_THAT(refusal(900), Contains("1 x 2"));
+    CHECK_THAT(refusal(1e-3), Contains("1.2e+06 x 1.5e+06") && Contains("cells of about 30 m") && Contains("at least"));
+    CHECK_THAT(refusal(1e-300), Contains("at least"));
+    CHECK_THAT(refusal(1e9, "EPSG:32610"), Contains("1 x 1"));
+    CHECK_THAT(refusal(1e-3, "EPSG:2229"), Contains("cells of about 30 m"));  // a plane in feet
+    CHECK(io::read_raster(path, {.cell_m = 480}).raster.grid.rows >= 2);      // what it told to give
+}
+
 TEST_CASE("Another coordinate system puts each height where it lies on the earth", "[window]") {
     const TempFolder temp;
     const auto path = write(temp, plane);

@@ -44,7 +44,7 @@ const std::vector<Kind> kinds{
     {"/ingest/hints/.*", {}},  // sentences with numbers
     {"/ingest/vertical_unit_m", Dimension{}},
     {"/ingest/most_frequent_m", Dimension{0, 1, true}},
-    {"/ingest/median_step_m", Dimension{0, 1}},
+    {"/ingest/(median_step|row_roughness|column_roughness)_m", Dimension{0, 1}},
     {"/ingest/cell_(width|height)", Dimension{1, 0}},
     {".*asymmetry_percent", {}},                                  // has a test of its own
     {"/chi/theta_(best|collinearity|disorder)_(se|ci95).*", {}},  // resamples are numbered rivers
@@ -185,6 +185,7 @@ Json summary(const Raster& raster, double channel_area_m2, Conditioning conditio
 /// What a summary would say of the same terrain with rows and columns exchanged.
 Json exchanged(Json summary) {
     Json& ingest = summary["ingest"];
+    std::swap(ingest["row_roughness_m"], ingest["column_roughness_m"]);
     std::swap(ingest["row_striping"], ingest["column_striping"]);
     std::swap(ingest["repeated_rows"], ingest["repeated_columns"]);
     std::swap(ingest["cell_width"], ingest["cell_height"]);

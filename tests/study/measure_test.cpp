@@ -4,15 +4,20 @@
 
 #include <catch2/catch.hpp>
 
+#include <chrono>
 #include <cmath>
+#include <future>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <thread>
 
 #include "support/drawing.hpp"
 #include "support/drawn_catchment.hpp"
 #include "support/steady_landscape.hpp"
 #include "support/temp_folder.hpp"
 #include "support/terrains.hpp"
+#include "thalweg/core/error.hpp"
 #include "thalweg/io/table_file.hpp"
 #include "thalweg/study/analyze.hpp"
 #include "thalweg/terrain/accumulate.hpp"
@@ -395,7 +400,59 @@ TEST_CASE("Slope–area by cells looks at basins' cells that conditioning left a
         return sum;
     };
     CHECK(cells(filled) < cells(plain));
+    CHECK(plain["slope_area_cells"]["cells"] == cells(plain));
+    CHECK(plain["slope_area_cells"]["cells_left_out"] == 0);
+    const Json& by_cells = filled["slope_area_cells"];
+    CHECK(by_cells["level_share"] == 0);
+    CHECK(by_cells["cells"] == cells(filled));
+    // Filled cells of the basins, and those that flow into one, as the written rasters have them.
+    const auto surface = io::read_raster(temp / "b" / "filled.tif").raster.values;
+    const auto direction = io::read_raster(temp / "b" / "flow_direction.tif").raster.values;
+    const RasterMeasurement measured = measure_raster(raster_of({"pitted", grid, pitted}), options);
+    int changed = 0, in_basins = 0;
+    for (Index node = 0; node < grid.size(); ++node) {
+        if (measured.statistics.basin_of[node] == none || direction[node] == 0) continue;
+        Index to = none;
+        grid.neighbors(node, [&](Index other, double, Slot slot) {
+            if (direction[node] == 1 << slot) to = other;
+        });
+        ++in_basins;
+        changed += surface[node] != pitted[node] || surface[to] != pitted[to];
+    }
+    CHECK(changed > 10);
+    CHECK(by_cells["cells_left_out"] == changed);
+    CHECK(by_cells["cells"].get<int>() + changed == in_basins);
     const Table written = io::read_csv(temp / "a" / "slope_area_cells.csv");
     CHECK(std::get<std::vector<double>>(written.columns[1].values).size() == plain["slope_area_cells"]["bins"].size());
     CHECK(std::filesystem::exists(temp / "a" / "slope_area_links.csv"));
+}
+
+TEST_CASE("What reads the routed terrain meanwhile is waited for before the terrain goes, even if a statistic fails") {
+    const Raster raster = raster_of(support::noise_terrain(6, 6, 1));
+    MeasureOptions options;
+    options.channels = ChannelRule::drop;  // of which so small a terrain has none: refused once water is routed
+    bool called = false, outlived = false;
+    const auto read_meanwhile = [&](const RoutedTerrain& terrain) {
+        called = true;
+        // It lives as long as the terrain: a function that the terrain holds is all that knows of it.
+        auto life = std::make_shared<int>();
+        const std::weak_ptr<int> terrain_life = life;
+        const_cast<RoutedTerrain&>(terrain).offset_m = [life = std::move(life)](Index, Index) { return Point{}; };
+        return std::async(std::launch::async, [&outlived, terrain_life] {
+            for (int look = 0; look < 100 && !outlived; ++look) {
+                std::this_thread::sleep_for(std::chrono::milliseconds(2));
+                outlived = terrain_life.expired();
+            }
+        });
+    };
+    CHECK_THROWS_AS(measure_raster(raster, options, read_meanwhile), Error);
+    CHECK(called);
+    CHECK_FALSE(outlived);
+}
+
+TEST_CASE("What fails meanwhile fails the measuring, once it is done") {
+    const auto fail = [](const RoutedTerrain&) {
+        return std::async(std::launch::async, [] { throw Error("the disk is full"); });
+    };
+    CHECK(test::error_of([&] { measure_raster(drawn_catchment(), channels_from(200), fail); }) == "the disk is full");
 }

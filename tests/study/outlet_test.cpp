@@ -137,6 +137,36 @@ TEST_CASE("A basin that the edge of the data cuts is measured, and said to be cu
     CHECK(s["outlet"]["area_m2"] == s["input"]["area_m2"]);
 }
 
+TEST_CASE("Of the holes in a DEM those count that the basin touches", "[outlet]") {
+    // Two valleys side by side that fall south, 20 columns each, with holes on their flanks and at the edge.
+    Raster raster = raster_of(support::terrain_of("valleys", 30, 40, [](Index r, Index c) {
+        return 100 - 2.0 * r + std::abs(static_cast<double>(c % 20) - 10);
+    }));
+    const auto blank = [&](Index row, Index col, Index height, Index width) {
+        for (Index r = row; r < row + height; ++r) {
+            for (Index c = col; c < col + width; ++c) raster.values[std::size_t{r} * 40 + c] = support::nodata;
+        }
+    };
+    blank(8, 12, 2, 3);   // inside the west valley
+    blank(20, 5, 1, 1);   // the same
+    blank(10, 27, 4, 4);  // inside the east valley
+    blank(0, 30, 3, 2);   // at the edge of the data: outside
+    const auto voids = [&](Index row, Index col) {
+        return catchment_above(raster, {middle(raster, row, col), 0}, MeasureOptions{}).void_cells;
+    };
+    CHECK(voids(28, 10) == 7);
+    CHECK(voids(16, 10) == 6);
+    CHECK(voids(4, 10) == 0);
+    CHECK(voids(28, 30) == 16);
+    const TempFolder temp;
+    MeasureOptions options;
+    NamedRaster dem{};
+    dem.raster = raster;
+    dem.void_cells = 23;
+    const NamedRaster basin = cut_to_outlet(dem, {middle(raster, 28, 10), 0}, options, {});
+    CHECK(Json::parse(analyze(basin, options, temp / "", {}))["ingest"]["void_cells"] == 7);
+}
+
 TEST_CASE("An outlet beside the data, or on a ridge, is refused in one sentence", "[outlet]") {
     const Raster raster = drawn_catchment();
     CHECK(error_of(raster, {{499999, 3999950}}).find("beside the DEM") != std::string::npos);

@@ -158,3 +158,16 @@ TEST_CASE("What a killed run of this process' own number left does not get into 
 TEST_CASE("Text that cannot be written whole is an error") {
     CHECK(test::is_sentence(error_of([] { write_text("/dev/full", std::string(100000, 'x')); })));
 }
+
+TEST_CASE("A folder that cannot be made or replaced is refused in our words before anything is written") {
+    for (const char* root : {"/", "//", "/..", "/tmp/.."}) {
+        CHECK_THAT(error_of([&] { OutputFolder(root, IfPresent::replace); }), Catch::Matchers::Contains("root"));
+    }
+    const TempFolder temp;
+    const std::string endless = error_of([&] { OutputFolder(temp / std::string(300, 'x'), IfPresent::refuse); });
+    CHECK(test::is_sentence(endless));
+    CHECK_THAT(endless, Catch::Matchers::Contains("cannot write into"));
+    CHECK_THAT(error_of([&] { OutputFolder(temp / std::string(300, 'x') / "out", IfPresent::refuse); }),
+               Catch::Matchers::Contains("cannot write into"));
+    CHECK(temp.empty());
+}

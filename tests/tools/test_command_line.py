@@ -4,6 +4,7 @@
 
 Usage: test_command_line.py THALWEG SOURCE_FOLDER
 """
+import ctypes
 import json
 import os
 import resource
@@ -33,12 +34,18 @@ max_steps = 10
 """
 
 
-def thalweg(*arguments, limit_bytes=None, stderr=subprocess.PIPE):
+def without_privileges():
+    """From here on root, too, may do only what the rights of files allow (Linux: SECBIT_NOROOT)."""
+    if os.geteuid() == 0 and ctypes.CDLL(None, use_errno=True).prctl(28, 1, 0, 0, 0) != 0:
+        raise OSError(ctypes.get_errno(), "prctl")
+
+
+def thalweg(*arguments, limit_bytes=None, stderr=subprocess.PIPE, preexec=None):
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (limit_bytes, limit_bytes))
 
     return subprocess.run([THALWEG, *map(str, arguments)], stdout=subprocess.PIPE, stderr=stderr, text=True, timeout=300,
-                          preexec_fn=limit if limit_bytes else None)
+                          preexec_fn=limit if limit_bytes else preexec)
 
 
 class CommandLine(unittest.TestCase):
@@ -105,6 +112,13 @@ class CommandLine(unittest.TestCase):
         for value in ("-5", "0", "nan", "inf", "much"):
             self.refused("analyze", DEM, "--channel-area-m2", value, *out, saying="--channel-area-m2")
         self.refused("analyze", DEM, "--crs", "EPSG:0", *out, saying="EPSG:0")
+        for option in ("--crs", "--nodata", "--theta", "--heads", "--reproject"):
+            self.refused("analyze", DEM, option, "", *out, saying=option + ": has an empty value")
+        self.refused("analyze", "", *out, saying="DEM: has an empty value")
+        for option in ("--crs", "--cell-m"):
+            self.refused("fit", DEM, option, "", *out, saying=option)
+            self.refused("compare", DEM, DEM, option, "", *out, saying=option)
+        self.refused("simulate", self.experiment, "--set", "", *out, saying="--set")
         self.refused("analyze", DEM, "--condition", "burn", *out, saying="burn")
         self.refused("analyze", DEM, "--threads", "-1", *out, saying="-1")
         self.refused("fit", DEM, "--uplift-m-per-yr", "much", *out, saying="--uplift-m-per-yr")
@@ -178,6 +192,8 @@ class CommandLine(unittest.TestCase):
         self.refused("analyze", DEM, "--crop", "5", "36", "6", "37", *out, saying="reaches from -84")
         self.refused("analyze", DEM, "--band", "2", *out, saying="no band 2")
         self.refused("analyze", DEM, "--band", "1.5", *out, saying="--band")
+        for cell in ("1e9", "1e-3"):
+            self.refused("analyze", DEM, "--reproject", "EPSG:32616", "--cell-m", cell, *out, saying="give a --cell-m of")
         self.refused("analyze", DEM, "--cell-m", "100", *out, saying="projected coordinate system")
         self.refused("analyze", DEM, "--reproject", "nowhere", *out, saying="'nowhere'")
         self.refused("analyze", DEM, "--sea-level", "9000", *out, saying="no data")
@@ -221,6 +237,39 @@ class CommandLine(unittest.TestCase):
         self.refused("simulate", self.experiment, "--out", self.here / "file/below", saying="cannot write")
         self.refused("simulate", self.experiment, "--out", "/proc/out", saying="cannot write")
         self.refused("simulate", self.experiment, "--out", "", saying="--out")
+        self.refused("simulate", self.experiment, "--out", "/", "--force", saying="root of all folders")
+        self.refused("simulate", self.experiment, "--out", self.here / ("x" * 300), saying="cannot write")
+
+    def test_a_folder_without_the_rights_to_write_or_replace_it_is_refused_before_the_work(self):
+        locked, out = self.here / "locked", self.here / "out"
+        (locked / "in").mkdir(parents=True)
+        (out / "below").mkdir(parents=True)
+        (out / "below/file").write_text("")
+        (out / ".thalweg-files").write_text("below/file\n")
+        self.addCleanup(subprocess.run, ["chmod", "-R", "u+rwx", self.here], check=True)
+        if subprocess.run(["true"], preexec_fn=without_privileges).returncode != 0:
+            self.skipTest("root cannot give up its privileges here")
+
+        def refused(where, saying, *more):
+            self.refused("simulate", self.experiment, "--no-figures", "--out", where, *more, saying=saying,
+                         preexec=without_privileges)
+
+        locked.chmod(0o555)
+        refused(locked / "out", "cannot write into")
+        refused(locked / "in/../out", "cannot write into")
+        locked.chmod(0o000)
+        refused(locked / "out", "cannot write into")
+        refused(locked / "in/out", "cannot write into")
+        locked.chmod(0o755)
+        (out / "below").chmod(0o555)
+        refused(out, "no permission to delete", "--force")
+        out.chmod(0o000)
+        refused(out, "cannot be looked into", "--force")
+        out.chmod(0o755)
+        (out / "below").chmod(0o755)
+        done = thalweg("simulate", self.experiment, "--no-figures", "--out", out, "--force", preexec=without_privileges)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertFalse((out / "below").exists())
 
     def test_a_full_disk_leaves_no_debris(self):
         for limit_bytes in (1000, 20000, 100000):
@@ -297,6 +346,9 @@ class CommandLine(unittest.TestCase):
         out = ["--no-figures", "--out", self.here / "out"]
         for value in ("1e-300", "0.29", "1e300"):
             self.refused("fit", DEM, "--n", value, *out, saying="--n")
+        for value in ("0", "-0.4", "2.01", "400"):
+            self.refused("analyze", DEM, "--theta", value, *out, saying="--theta")
+            self.refused("fit", DEM, "--theta-fixed", value, *out, saying="--theta-fixed")
         self.refused("fit", DEM, "--deposition-g", "-0.1", *out, saying="--deposition-g")
         self.refused("fit", DEM, "--theta-fixed", "1e300", *out, saying="--theta-fixed")
 

@@ -12,6 +12,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "io/ascii_grid.hpp"
 #include "thalweg/core/error.hpp"
 
 namespace thalweg::io {
@@ -150,6 +151,7 @@ DatasetPtr open_raster(const fs::path& path, GdalGuard& gdal) {
     if (!dataset || dataset->GetRasterCount() == 0) refuse(path, gdal);
     gdal.forget();
     check_raw_size(path, *dataset);
+    check_ascii_grid(*dataset, path.string());
     return dataset;
 }
 

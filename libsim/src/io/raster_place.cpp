@@ -9,6 +9,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -155,7 +156,17 @@ void find_vertical_unit(GDALDataset& dataset, const OGRSpatialReference* crs, co
     }
 }
 
-/// Ratio of lengths on the map to lengths on the ellipsoid around the raster's middle, west to east; 0 if unknown.
+/// Whether a longitude and latitude lead back to the place on the map. A map that reaches around the earth gives every
+/// easting a longitude, those beyond its edge that of another place.
+bool leads_back(const OGRCoordinateTransformation& change, Point place, Point longitude_latitude, double rounding) {
+    auto [x, y] = longitude_latitude;
+    if (!std::isfinite(x) || !(std::abs(y) <= 90)) return false;
+    const std::unique_ptr<OGRCoordinateTransformation> back(change.GetInverse());
+    return back && back->Transform(1, &x, &y) && std::abs(x - place.x) <= rounding && std::abs(y - place.y) <= rounding;
+}
+
+/// Ratio of lengths on the map to lengths on the ellipsoid around the raster's middle, west to east; 0 if unknown,
+/// infinite where the middle lies beyond the map's edge.
 /// Throws Error where the coordinates cannot be those of the coordinate system.
 double map_scale(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs, const std::string& name) {
     const GdalGuard gdal;  // what is said here is no damage of the file
@@ -166,25 +177,40 @@ double map_scale(const Placement& p, Index rows, Index cols, const OGRSpatialRef
     sphere->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     const std::unique_ptr<OGRCoordinateTransformation> change(OGRCreateCoordinateTransformation(&plane, sphere.get()));
     const Point middle = p.center(rows / 2, cols / 2);
-    std::array<double, 2> x{middle.x - p.cell_width / 2, middle.x + p.cell_width / 2};
-    std::array<double, 2> y{middle.y, middle.y};
+    const std::array<double, 2> x{middle.x - p.cell_width / 2, middle.x + p.cell_width / 2};
+    const std::array<double, 2> y{middle.y, middle.y};
+    std::array<double, 2> longitude = x, latitude = y;
     if (!change) return 0;
-    if (!change->Transform(2, x.data(), y.data())) {
+    if (!change->Transform(2, longitude.data(), latitude.data())) {
         throw Error(
             fmt::format("the middle of {}, ({:.10g}, {:.10g}), is no place on the earth in its coordinate system ({}): "
                         "give the right one with --crs",
                         name, middle.x, middle.y, epsg_or_name(crs)));
     }
+    const double rounding = std::max({p.cell_width, p.cell_height, 1 / crs.GetLinearUnits()});  // a cell or a metre
+    if (!leads_back(*change, {x[0], y[0]}, {longitude[0], latitude[0]}, rounding)) {
+        return std::numeric_limits<double>::infinity();
+    }
     double f = crs.GetInvFlattening();
     f = f == 0 ? 0 : 1 / f;
     double ground = 0;
-    GeographicLib::Geodesic(crs.GetSemiMajor(), f).Inverse(y[0], x[0], y[1], x[1], ground);
+    GeographicLib::Geodesic(crs.GetSemiMajor(), f)
+        .Inverse(latitude[0], longitude[0], latitude[1], longitude[1], ground);
     return ground > 0 ? p.cell_width * crs.GetLinearUnits() / ground : 0;
 }
 
 void warn_of_stretched_map(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs,
                            const std::string& name, ReadResult& result) {
     const double scale = map_scale(p, rows, cols, crs, name);
+    if (std::isinf(scale)) {
+        const Point middle = p.center(rows / 2, cols / 2);
+        result.warnings.push_back(
+            fmt::format("the middle of {}, ({:.10g}, {:.10g}), lies beyond the edge of the earth on the map of its "
+                        "coordinate system ({}): lengths, areas and slopes are the map's; if it is the wrong one, give "
+                        "the right one with --crs",
+                        name, middle.x, middle.y, epsg_or_name(crs)));
+        return;
+    }
     if (scale == 0 || std::abs(scale - 1) < 0.01) return;
     result.warnings.push_back(fmt::format(
         "lengths on the map of {} are {:.1f} % {} than on the ground: lengths, areas and slopes are the map's "

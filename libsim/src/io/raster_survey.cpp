@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/raster_survey.hpp"
 
+#include "thalweg/io/raster_file.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -117,6 +119,28 @@ std::vector<std::uint8_t> outside_cells(const Raster& raster) {
     return outside;
 }
 
+/// Cells of the holes that touch the part.
+std::size_t cells_beside(const Raster& raster, std::span<const std::uint8_t> part) {
+    std::vector<std::uint8_t> seen = outside_cells(raster);
+    std::vector<Index> stack;
+    std::size_t cells = 0;
+    const auto reach = [&](Index node) {
+        if (seen[node] || !std::isnan(raster.values[node])) return;
+        seen[node] = 1;
+        ++cells;
+        stack.push_back(node);
+    };
+    for (Index node = 0; node < raster.grid.size(); ++node) {
+        if (part[node]) raster.grid.neighbors(node, [&](Index other, double, Slot) { reach(other); });
+    }
+    while (!stack.empty()) {
+        const Index node = stack.back();
+        stack.pop_back();
+        raster.grid.neighbors(node, [&](Index other, double, Slot) { reach(other); });
+    }
+    return cells;
+}
+
 std::size_t cells_in_holes(const Raster& raster) {
     const std::vector<std::uint8_t> outside = outside_cells(raster);
     std::size_t cells = 0;
@@ -125,6 +149,10 @@ std::size_t cells_in_holes(const Raster& raster) {
 }
 
 }  // namespace
+
+Index void_cells_beside(const Raster& raster, std::span<const std::uint8_t> part) {
+    return static_cast<Index>(cells_beside(raster, part));
+}
 
 HeightsNoticed notice_heights(const Raster& raster, const std::string& name) {
     HeightsNoticed noticed;

@@ -2,7 +2,9 @@
 #include "io/raster_window.hpp"
 
 #include <cpl_string.h>
+#include <cpl_vsi.h>
 #include <fmt/format.h>
+#include <gdal_alg.h>
 #include <gdal_utils.h>
 #include <ogr_spatialref.h>
 
@@ -83,7 +85,55 @@ double mean_step(const std::vector<double>& steps) {
 /// How the warper interpolates onto cells so many times as wide.
 const char* resampling(double times) { return times > 1.9 ? "average" : "bilinear"; }
 
-CPLStringList warp_arguments(const Raster& raster, const std::string& name, const ReadOptions& options) {
+/// Cells of the raster in another system, and how far they reach there, as GDAL would choose them.
+struct Reach {
+    double cols, rows;
+    double width, height;  ///< in the system's units
+};
+
+Reach reach_in(GDALDataset& source, const OGRSpatialReference& system, const std::string& name) {
+    char* text = nullptr;
+    system.exportToWkt(&text);
+    CPLStringList options(CSLSetNameValue(nullptr, "DST_SRS", text), TRUE);
+    CPLFree(text);
+    const std::unique_ptr<void, decltype(&GDALDestroyGenImgProjTransformer)> change(
+        GDALCreateGenImgProjTransformer2(&source, nullptr, options.List()), GDALDestroyGenImgProjTransformer);
+    std::array<double, 6> transform{};
+    std::array<double, 4> edges{};  // west, south, east, north
+    int cols = 0, rows = 0;
+    if (!change || GDALSuggestedWarpOutput2(&source, GDALGenImgProjTransform, change.get(), transform.data(), &cols,
+                                            &rows, edges.data(), 0) != CE_None) {
+        throw Error(fmt::format("{} cannot be put into {}, which does not reach there: give another --reproject", name,
+                                system.GetName()));
+    }
+    return {static_cast<double>(cols), static_cast<double>(rows), edges[2] - edges[0], edges[3] - edges[1]};
+}
+
+/// Before GDAL is asked for cells that it cannot make, or that are no terrain.
+void check_cell(GDALDataset& source, const OGRSpatialReference& system, const std::string& name, double cell_m) {
+    const Reach reach = reach_in(source, system, name);
+    const double unit_m = system.GetLinearUnits(), width_m = reach.width * unit_m, height_m = reach.height * unit_m;
+    const auto along = [&](double length_m) { return std::max(1.0, std::floor(length_m / cell_m + 0.5)); };  // as GDAL
+    const double rows = along(height_m), cols = along(width_m);
+    if (rows < 2 || cols < 2) {
+        throw Error(
+            fmt::format("cells of {:g} m would leave {:.0f} x {:.0f} of {} (rows x columns), which is {:.4g} m "
+                        "high and {:.4g} m wide: give a --cell-m of at most {:.2g}",
+                        cell_m, rows, cols, name, height_m, width_m, std::min(width_m, height_m) / 2.5));
+    }
+    constexpr double copies = 2;  // GDAL's and ours
+    const auto memory = static_cast<double>(CPLGetUsablePhysicalRAM());
+    const double fit = memory > 0 ? std::min(memory / (copies * sizeof(double)), double{none}) : double{none};
+    if (rows * cols < fit) return;
+    throw Error(fmt::format(
+        "cells of {:g} m would be {:.3g} x {:.3g} of {} (rows x columns), more than {}: it has cells "
+        "of about {:.3g} m, so give a --cell-m of at least {:.2g}",
+        cell_m, rows, cols, name, fit < none ? "the memory of this machine holds" : "32-bit numbers can count",
+        std::sqrt(width_m * height_m / (reach.rows * reach.cols)), 1.1 * std::sqrt(width_m * height_m / fit)));
+}
+
+CPLStringList warp_arguments(const Raster& raster, GDALDataset& source, const std::string& name,
+                             const ReadOptions& options) {
     CPLStringList arguments;
     const auto add = [&](std::initializer_list<std::string> words) {
         for (const std::string& word : words) arguments.AddString(word.c_str());
@@ -100,6 +150,7 @@ CPLStringList warp_arguments(const Raster& raster, const std::string& name, cons
             throw Error(
                 "cells in metres need a projected coordinate system: give one to reproject to, e.g. EPSG:32611");
         }
+        check_cell(source, system, name, *options.cell_m);
         const std::string step = fmt::format("{:.17g}", *options.cell_m / system.GetLinearUnits());
         add({"-tr", step, step});
     }
@@ -146,11 +197,10 @@ DatasetPtr window_of(GDALDataset& dataset, const std::string& name, const ReadOp
 
 namespace {
 
-DatasetPtr warp(const Raster& raster, const std::string& name, CPLStringList& arguments) {
-    const DatasetPtr source = dataset_over(raster);
+DatasetPtr warp(GDALDataset& source, const std::string& name, CPLStringList& arguments) {
     const std::unique_ptr<GDALWarpAppOptions, decltype(&GDALWarpAppOptionsFree)> parsed(
         GDALWarpAppOptionsNew(arguments.List(), nullptr), GDALWarpAppOptionsFree);
-    GDALDatasetH from = source.get();
+    GDALDatasetH from = &source;
     DatasetPtr result(GDALDataset::FromHandle(GDALWarp("", nullptr, 1, &from, parsed.get(), nullptr)));
     if (!result) throw Error(fmt::format("{} cannot be put on other cells: {}", name, CPLGetLastErrorMsg()));
     result->GetRasterBand(1)->SetUnitType("m");
@@ -160,8 +210,9 @@ DatasetPtr warp(const Raster& raster, const std::string& name, CPLStringList& ar
 }  // namespace
 
 DatasetPtr warped(const Raster& raster, const std::string& name, const ReadOptions& options) {
-    CPLStringList arguments = warp_arguments(raster, name, options);
-    return warp(raster, name, arguments);
+    const DatasetPtr source = dataset_over(raster);
+    CPLStringList arguments = warp_arguments(raster, *source, name, options);
+    return warp(*source, name, arguments);
 }
 
 DatasetPtr on_cells(const Raster& raster, Index rows, Index cols) {
@@ -175,7 +226,7 @@ DatasetPtr on_cells(const Raster& raster, Index rows, Index cols) {
     add({"-of", "MEM", "-te", text(p.west), text(south), text(east), text(p.north)});
     add({"-ts", fmt::format("{}", cols), fmt::format("{}", rows)});
     add({"-r", resampling(double(raster.grid.cols) / cols), "-et", "0"});
-    return warp(raster, "the terrain", arguments);
+    return warp(*dataset_over(raster), "the terrain", arguments);
 }
 
 }  // namespace thalweg::io

@@ -180,7 +180,7 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
     const HeightSurvey survey = survey_heights(dem.raster);
     const std::vector<std::string> hints = survey_hints(survey, dem.raster, m.vertical_quantum_m);
     summary["ingest"] = ingest_json(dem, m, survey, hints);
-    explain_null("ingest", summary["ingest"], "there are too few cells of different height", notes);
+    explain_null("ingest", summary["ingest"], "there are too few cells of different height, or none whose roughness is more than rounding", notes);
     messages.report(ingest_line(dem, m));
     for (const std::string& hint : hints) messages.warning(hint);
     for (const std::string& note : notes) {

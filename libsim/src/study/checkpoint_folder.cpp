@@ -6,15 +6,14 @@
 
 #include "thalweg/core/error.hpp"
 #include "thalweg/study/checkpoint.hpp"
+#include "thalweg/study/output_folder.hpp"
 
 namespace thalweg::study {
 namespace fs = std::filesystem;
 namespace {
 
 fs::path hidden_sibling(const fs::path& results) {
-    if (results.empty()) throw Error("no output folder: give --out DIR");
-    fs::path place = fs::absolute(results).lexically_normal();
-    if (!place.has_filename()) place = place.parent_path();
+    const fs::path place = output_place(results);
     return place.parent_path() / fmt::format(".{}.checkpoint", place.filename().string());
 }
 
@@ -22,9 +21,10 @@ fs::path hidden_sibling(const fs::path& results) {
 
 CheckpointFolder::CheckpointFolder(const fs::path& results, StoppedRun mode)
     : folder_(hidden_sibling(results)), mode_(mode) {
-    if (!fs::is_directory(folder_)) return;
+    std::error_code ignored;  // what cannot be seen cannot be written either, and is told then
+    if (!fs::is_directory(folder_, ignored)) return;
     lock();
-    if (!fs::exists(state_file())) return;
+    if (!fs::exists(state_file(), ignored)) return;
     if (mode == StoppedRun::refuse) {
         throw Error(
             fmt::format("a stopped run of '{}' can go on (its state is in '{}'): give --resume, or --force to "

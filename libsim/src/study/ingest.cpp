@@ -64,6 +64,8 @@ Json ingest_json(const NamedRaster& dem, const RasterMeasurement& m, const Heigh
             {"most_frequent_m", number(s.most_frequent_m)},
             {"most_frequent_share", number(s.most_frequent_share)},
             {"zero_share", number(s.zero_share)},
+            {"row_roughness_m", number(s.row_roughness_m)},
+            {"column_roughness_m", number(s.column_roughness_m)},
             {"row_striping", number(s.row_striping)},
             {"column_striping", number(s.column_striping)},
             {"repeated_rows", number(s.repeated_rows)},

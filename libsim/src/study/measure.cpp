@@ -124,14 +124,21 @@ double share(std::size_t part, std::size_t whole) {
     return whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : nan;
 }
 
-/// 1 for nodes in the basins whose step down is as the ground has it.
-std::vector<std::uint8_t> natural_steps(const RoutedTerrain& terrain, std::span<const double> ground_m,
-                                        std::span<const Index> basin_of) {
-    std::vector<std::uint8_t> natural(basin_of.size());
+/// Steps down in the basins that are as the ground has them, and how many are not.
+struct NaturalSteps {
+    std::vector<std::uint8_t> node;  ///< 1 where the step from it is natural
+    std::size_t others = 0;
+};
+
+NaturalSteps natural_steps(const RoutedTerrain& terrain, std::span<const double> ground_m,
+                           std::span<const Index> basin_of) {
+    NaturalSteps natural{.node = std::vector<std::uint8_t>(basin_of.size())};
     const auto unchanged = [&](Index node) { return terrain.elevation_m[node] == ground_m[node]; };
-    for (Index node = 0; node < natural.size(); ++node) {
+    for (Index node = 0; node < natural.node.size(); ++node) {
         const Index receiver = terrain.graph.receiver[node];
-        natural[node] = basin_of[node] != none && receiver != none && unchanged(node) && unchanged(receiver);
+        if (basin_of[node] == none || receiver == none) continue;
+        natural.node[node] = unchanged(node) && unchanged(receiver);
+        natural.others += natural.node[node] == 0;
     }
     return natural;
 }
@@ -139,13 +146,15 @@ std::vector<std::uint8_t> natural_steps(const RoutedTerrain& terrain, std::span<
 SlopeAreaByNodes slope_area_by_nodes(const RoutedTerrain& terrain, std::span<const double> ground_m,
                                      std::span<const Index> basin_of, double channels_from_m2) {
     const auto& area = terrain.divided_area_m2.empty() ? terrain.drainage_area_m2 : terrain.divided_area_m2;
-    channel::NodeSlopeBins nodes =
-        channel::node_slope_bins(terrain.graph, area, terrain.elevation_m, natural_steps(terrain, ground_m, basin_of));
+    const NaturalSteps natural = natural_steps(terrain, ground_m, basin_of);
+    channel::NodeSlopeBins nodes = channel::node_slope_bins(terrain.graph, area, terrain.elevation_m, natural.node);
     std::vector<channel::SlopeAreaBin> of_channels;
     std::ranges::copy_if(nodes.bins, std::back_inserter(of_channels),
                          [&](const auto& bin) { return bin.area_m2 >= channels_from_m2; });
     SlopeAreaByNodes s{.law = channel::fit_slope_area(std::move(of_channels)),
                        .fitted_from_m2 = channels_from_m2,
+                       .looked_at = nodes.looked_at,
+                       .left_out = natural.others,
                        .level_share = share(nodes.level, nodes.looked_at),
                        .turnover = channel::hillslope_turnover(nodes.bins)};
     s.law.bins = std::move(nodes.bins);

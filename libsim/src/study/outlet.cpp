@@ -149,6 +149,8 @@ OutletCatchment catchment_above(const Raster& raster, const OutletRequest& reque
             fmt::format("no cell drains to the outlet ({:.10g}, {:.10g}): let it be moved further with --snap-m",
                         request.at.x, request.at.y));
     }
+    std::vector<std::uint8_t> inside(label.size());
+    std::ranges::transform(label, inside.begin(), [](Index basin) { return basin == 0 ? 1 : 0; });
     Catchment catchment = cut_out(raster, label, outlet);
     return {.raster = std::move(catchment.raster),
             .outlet = catchment.outlet,
@@ -157,7 +159,8 @@ OutletCatchment catchment_above(const Raster& raster, const OutletRequest& reque
                        .snap_m = snap_m,
                        .moved_m = distance_m(grid, cell, place_of(raster, cell, request.at), outlet),
                        .area_m2 = r.area_m2[outlet],
-                       .complete = complete}};
+                       .complete = complete},
+            .void_cells = io::void_cells_beside(raster, inside)};
 }
 
 NamedRaster cut_to_outlet(const NamedRaster& dem, const OutletRequest& request, MeasureOptions& options,
@@ -176,7 +179,7 @@ NamedRaster cut_to_outlet(const NamedRaster& dem, const OutletRequest& request, 
                       .warnings = dem.warnings,
                       .origin = dem.origin,
                       .vertical_unit_m = dem.vertical_unit_m,
-                      .void_cells = dem.void_cells,
+                      .void_cells = cut.void_cells,
                       .outlet = cut.report};
     if (!cut.report.complete) {
         basin.warnings.push_back(

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <signal.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -38,10 +39,13 @@ constexpr const char* list_name = ".thalweg-files";
 
 std::vector<std::string> files_below(const fs::path& folder) {
     std::vector<std::string> files;
-    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-        if (entry.is_symlink() || !entry.is_directory())
-            files.push_back(entry.path().lexically_relative(folder).generic_string());
+    std::error_code problem;
+    fs::recursive_directory_iterator entry(folder, problem);
+    for (; !problem && entry != fs::recursive_directory_iterator(); entry.increment(problem)) {
+        if (entry->is_symlink() || !entry->is_directory())
+            files.push_back(entry->path().lexically_relative(folder).generic_string());
     }
+    if (problem) throw Error(fmt::format("'{}' cannot be looked into: {}", folder.string(), problem.message()));
     std::sort(files.begin(), files.end());
     return files;
 }
@@ -57,29 +61,68 @@ std::string first_foreign_file(const fs::path& folder) {
     return "";
 }
 
-fs::path final_place(const fs::path& given) {
-    if (given.empty()) throw Error("no output folder: give --out DIR");
-    const fs::path place = fs::absolute(given).lexically_normal();
-    return place.has_filename() ? place : place.parent_path();
+bool may_change(const fs::path& folder) { return ::eaccess(folder.c_str(), W_OK | X_OK) == 0; }
+
+/// Whether the folder's own rules let us move and delete what it holds: in one like /tmp everybody only his own.
+bool may_take_from(const fs::path& folder, const fs::path& entry) {
+    struct stat parent {
+    }, own{};
+    if (::stat(folder.c_str(), &parent) != 0 || ::lstat(entry.c_str(), &own) != 0) return true;  // told elsewhere
+    const uid_t we = ::geteuid();
+    return (parent.st_mode & S_ISVTX) == 0 || we == 0 || we == parent.st_uid || we == own.st_uid;
+}
+
+/// The first folder, this one or one below, out of which we could not delete what it holds; "" if there is none.
+fs::path first_kept_folder(const fs::path& folder) {
+    if (!may_take_from(folder.parent_path(), folder)) return folder;
+    if (!fs::is_empty(folder) && !may_change(folder)) return folder;
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        if (entry.is_symlink() || !entry.is_directory() || fs::is_empty(entry.path())) continue;
+        if (!may_change(entry.path())) return entry.path();
+    }
+    return {};
+}
+
+/// The innermost folder on the way to `path` that is there. Throws Error where that cannot be told.
+fs::path nearest_folder(fs::path path) {
+    std::error_code problem;
+    while (!fs::exists(path, problem) && path.has_relative_path()) {
+        if (problem) {
+            throw Error(fmt::format("cannot write into '{}': {}", path.parent_path().string(), problem.message()));
+        }
+        path = path.parent_path();
+    }
+    return path;
 }
 
 }  // namespace
 
+fs::path output_place(const fs::path& given) {
+    if (given.empty()) throw Error("no output folder: give --out DIR");
+    const fs::path place = fs::absolute(given).lexically_normal();
+    const fs::path folder = place.has_filename() ? place : place.parent_path();
+    if (!folder.has_filename()) {
+        throw Error(fmt::format("'{}' is the root of all folders, which results cannot replace: name one below it",
+                                given.string()));
+    }
+    return folder;
+}
+
 OutputFolder::OutputFolder(fs::path final, IfPresent if_present)
-    : given_(std::move(final)), final_(final_place(given_)), if_present_(if_present) {
+    : given_(std::move(final)), final_(output_place(given_)), if_present_(if_present) {
     check();
     partial_ = hidden_neighbour(final_, "partial");
     make_partial();
 }
 
 void OutputFolder::make_partial() {
-    for (fs::path parent = final_.parent_path(); !parent.empty() && !fs::exists(parent);
-         parent = parent.parent_path()) {
+    const fs::path there = nearest_folder(final_.parent_path());
+    for (fs::path parent = final_.parent_path(); parent != there; parent = parent.parent_path()) {
         created_parents_.push_back(parent);
     }
-    std::error_code problem;
+    std::error_code problem, ignored;
     fs::create_directories(final_.parent_path(), problem);
-    if (!problem && fs::is_directory(partial_)) {  // of a process that had this one's number
+    if (!problem && fs::is_directory(partial_, ignored)) {  // of a process that had this one's number
         const int left = locked(partial_);
         if (left < 0) {
             throw Error(fmt::format("another process is writing '{}' just now; wait for it or name another folder",
@@ -91,15 +134,15 @@ void OutputFolder::make_partial() {
     if (!problem) fs::create_directory(partial_, problem);
     if (problem) {
         discard();
-        throw Error(fmt::format("cannot write into '{}': {}", final_.parent_path().string(), problem.message()));
+        throw Error(fmt::format("cannot write into '{}': {}", there.string(), problem.message()));
     }
     lock_ = locked(partial_);  // where a file system knows no locks, the process' number alone tells that it lives
 }
 
 void OutputFolder::check() const {
-    std::error_code ignored;
-    const fs::file_status status = fs::symlink_status(final_, ignored);
-    if (!fs::exists(status)) return;
+    std::error_code problem;
+    const fs::file_status status = fs::symlink_status(final_, problem);
+    if (!fs::exists(status)) return;  // what keeps us from seeing it, its parent's rights or its length, is told there
     if (if_present_ == IfPresent::refuse) {
         throw Error(
             fmt::format("'{}' exists already; name another folder or use --force to replace it", given_.string()));
@@ -108,11 +151,18 @@ void OutputFolder::check() const {
         throw Error(fmt::format("'{}' is not a folder, so it is not replaced; name another", given_.string()));
     }
     const std::string foreign = first_foreign_file(final_);
-    if (foreign.empty()) return;
+    if (!foreign.empty()) {
+        throw Error(
+            fmt::format("'{}' holds '{}', which thalweg did not write, so --force does not replace it; move it away or "
+                        "name another folder",
+                        given_.string(), foreign));
+    }
+    const fs::path kept = first_kept_folder(final_);
+    if (kept.empty()) return;
     throw Error(
-        fmt::format("'{}' holds '{}', which thalweg did not write, so --force does not replace it; move it away or "
-                    "name another folder",
-                    given_.string(), foreign));
+        fmt::format("'{}' cannot be replaced: there is no permission to delete what '{}' holds; name another "
+                    "folder",
+                    given_.string(), kept.string()));
 }
 
 OutputFolder::~OutputFolder() {
@@ -135,7 +185,8 @@ void OutputFolder::commit() {
     // The old folder steps aside first: a folder that is not empty cannot be replaced in one rename.
     const fs::path aside = hidden_neighbour(final_, "replaced");
     std::error_code problem;
-    const bool replaces = fs::exists(final_);
+    const bool replaces = fs::exists(fs::symlink_status(final_, problem));
+    problem.clear();
     if (replaces) fs::rename(final_, aside, problem);
     if (!problem) fs::rename(partial_, final_, problem);
     if (problem) {
@@ -149,7 +200,7 @@ void OutputFolder::commit() {
 
 std::vector<std::string> remove_abandoned(const fs::path& final) {
     std::vector<std::string> removed;
-    const fs::path place = final_place(final);
+    const fs::path place = output_place(final);
     const std::string prefix = fmt::format(".{}.partial-", place.filename().string());
     std::error_code ignored;
     for (const auto& entry : fs::directory_iterator(place.parent_path(), ignored)) {

@@ -113,6 +113,8 @@ Json slope_area_json(const channel::SlopeArea& s) {
 Json nodes_json(const SlopeAreaByNodes& s) {
     Json json = slope_area_json(s.law);
     json["fitted_from_m2"] = number(s.fitted_from_m2);
+    json["cells"] = s.looked_at;
+    json["cells_left_out"] = s.left_out;
     json["level_share"] = number(s.level_share);
     json["turnover_area_m2"] = number(s.turnover.area_m2);
     json["turnover_range_m2"] = numbers(s.turnover.range_m2);

@@ -51,6 +51,10 @@ ReadResult read_raster(const std::filesystem::path&, const ReadOptions& = {});
 /// measures are those of the new cells, on degrees ellipsoidal. Throws Error where nothing has data then.
 Raster on_larger_cells(const Raster&, double times);
 
+/// Cells of those holes of no data inside the terrain that touch a part of it (1 in `part`, by cell) at a side or a
+/// corner; holes as `void_cells` of a ReadResult counts them. Linear.
+Index void_cells_beside(const Raster&, std::span<const std::uint8_t> part);
+
 enum class CellType { float64, uint8, int32 };
 
 enum class Layout {

@@ -39,7 +39,7 @@ struct NamedRaster {
     std::vector<std::string> warnings;
     std::optional<Origin> origin;
     double vertical_unit_m = 1;               ///< heights were multiplied by this
-    Index void_cells = 0;                     ///< without data inside the terrain
+    Index void_cells = 0;                     ///< without data inside the terrain (cut down: in holes it touches)
     std::optional<OutletReport> outlet = {};  ///< of the catchment that it was cut down to
 };
 

@@ -167,6 +167,8 @@ struct ChiStatistics {
 struct SlopeAreaByNodes {
     channel::SlopeArea law;  ///< all bins; the line is that of the ones from `fitted_from_m2` on
     double fitted_from_m2;   ///< where channels begin
+    std::size_t looked_at;   ///< nodes
+    std::size_t left_out;    ///< nodes that conditioning changed, or their receiver
     double level_share;      ///< of the nodes looked at, without fall
     channel::Turnover turnover;
 };

@@ -39,6 +39,7 @@ struct OutletCatchment {
     Raster raster;
     Index outlet;  ///< cell of `raster`
     OutletReport report;
+    Index void_cells;  ///< of the holes in the terrain that the catchment touches
 };
 
 /// Snaps the outlet and cuts its catchment out, as the conditioning of the options lets water run. Throws Error for a

@@ -9,6 +9,9 @@ namespace thalweg::study {
 
 enum class IfPresent { refuse, replace };
 
+/// The absolute place of a folder of results. Throws Error for no path and for the root of all folders.
+std::filesystem::path output_place(const std::filesystem::path& given);
+
 /// A folder that appears whole or not at all: files are written into a hidden neighbour, which takes the final name in
 /// one rename on `commit`. Without a commit nothing is left behind, and what stood there before is still there. A
 /// folder that holds a file or a link that we did not write (as its list, .thalweg-files, tells) is never replaced.
@@ -17,8 +20,9 @@ enum class IfPresent { refuse, replace };
 /// run that was killed.
 class OutputFolder {
   public:
-    /// Throws Error if `final` exists and may not be replaced, its parent cannot be written, or another process with
-    /// this one's number (in another container, or on another machine) is writing the same folder.
+    /// Throws Error if `final` exists and may not be replaced (also for lack of the rights to delete it), its parent
+    /// cannot be written, or another process with this one's number (in another container, or on another machine) is
+    /// writing the same folder.
     OutputFolder(std::filesystem::path final, IfPresent);
     ~OutputFolder();
     OutputFolder(const OutputFolder&) = delete;
