@@ -38,6 +38,30 @@ TEST_CASE("Candidates come in the order of a plain heap, whatever is entered bet
         }
         for (Candidate taken{}; candidates.pop(taken); plain.pop()) REQUIRE(taken.link == plain.top().link);
         REQUIRE(plain.empty());
+        Candidate taken{};
+        REQUIRE_FALSE(candidates.pop(taken));  // nothing of before comes back, and what enters now is found
+        for (Index link = 0; link < 30; ++link) candidates.push({largest / (1 + link % 7), link});
+        Candidate before{2 * largest, 0};
+        for (Index number = 0; number < 30; ++number) {
+            REQUIRE(candidates.pop(taken));
+            REQUIRE(taken < before);
+            before = taken;
+        }
+        REQUIRE_FALSE(candidates.pop(taken));
+    }
+}
+
+TEST_CASE("The larger excess comes first, of equal ones the older link") {
+    CHECK(Candidate{1, 5} < Candidate{2, 9});
+    CHECK_FALSE(Candidate{2, 9} < Candidate{1, 5});
+    CHECK(Candidate{1, 6} < Candidate{1, 5});
+    CHECK_FALSE(Candidate{1, 5} < Candidate{1, 6});
+    Candidates candidates(1);
+    for (const Index link : {3, 1, 2}) candidates.push({0.5, link});
+    Candidate taken{};
+    for (const Index link : {1, 2, 3}) {
+        REQUIRE(candidates.pop(taken));
+        CHECK(taken.link == link);
     }
 }
 

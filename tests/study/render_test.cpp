@@ -163,6 +163,37 @@ TEST_CASE("A small DEM is not painted as if all of it were water") {
     CHECK(share_of_water() > 0.5);
 }
 
+TEST_CASE("A block's oblique side is lit as one, however its cells step") {
+    const TempFolder folder;
+    const Grid grid = plane_grid(60, 90, 10, 10);
+    std::vector<double> heights(grid.size());
+    for (Index i = 0; i < grid.size(); ++i) {
+        heights[i] = grid.row(i) > 30 + grid.col(i) / 4 ? no_data : 100 + 5.0 * grid.row(i);
+    }
+    io::write_raster(folder / "oblique.tif", grid,
+                     {.west = 500000, .north = 4000000, .cell_width = 10, .cell_height = 10, .crs_wkt = {}}, heights,
+                     {});
+    RenderOptions o;
+    o.view = {.azimuth = std::numbers::pi, .elevation = 0.3, .width = 300, .height = 200};
+    o.background = PictureBackground::white;
+    o.samples = 32;
+    for (const double bearing : {100.0, 160.0, 230.0}) {  // sun along the side, on it, and a little from behind
+        o.sun_azimuth = bearing * std::numbers::pi / 180;
+        const Pixels lit = decoded(render_dem(folder / "oblique.tif", "view.png", o, {}), folder);
+        int darkest = 255, lightest = 0;
+        for (int col = 60; col < 240; ++col) {
+            int row = lit.height - 1;
+            while (row > 0 && is_white(lit.at(col, row)[0], lit.at(col, row)[1], lit.at(col, row)[2])) --row;
+            const int green = lit.at(col, row - 6)[1];  // well up the side
+            darkest = std::min(darkest, green);
+            lightest = std::max(lightest, green);
+        }
+        INFO("sun at " << bearing << ": " << darkest << " to " << lightest);
+        CHECK(lightest > 20);
+        CHECK(lightest - darkest < 6);
+    }
+}
+
 TEST_CASE("Lines become SVG, surfaces do not") {
     RenderOptions o = small();
     o.style = PictureStyle::wireframe;

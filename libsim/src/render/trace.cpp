@@ -101,6 +101,11 @@ class Tracer {
                   .color = model_.side_color};
         if (dot(spot.normal, along) > 0) spot.normal = -1 * spot.normal;
         spot.shading = spot.normal;
+        if (hit.surface != 0 && !model_.side_normals.empty()) {
+            const Vector& outward = model_.side_normals[hit.triangle];
+            spot.shading = spot.normal = outward;
+            spot.place = spot.place + model_.side_clearance * outward;
+        }
         if (hit.surface != 0) return spot;
         spot.color = static_cast<float>(w) * model_.color[t[0]] + static_cast<float>(hit.u) * model_.color[t[1]] +
                      static_cast<float>(hit.v) * model_.color[t[2]];
@@ -160,6 +165,10 @@ Picture trace(const Model& model, const Camera& camera, const Light& light, cons
     if (model.ground.triangles.empty()) throw Error("a picture needs at least one triangle");
     if (model.color.size() != model.ground.size()) {
         throw Error(fmt::format("{} colours for {} vertices", model.color.size(), model.ground.size()));
+    }
+    if (!model.side_normals.empty() && model.side_normals.size() != model.sides.triangles.size()) {
+        throw Error(fmt::format("{} normals for {} triangles of the sides", model.side_normals.size(),
+                                model.sides.triangles.size()));
     }
     const Tracer tracer(model, camera, light, sampling);
     Picture picture{.width = camera.width, .height = camera.height, .light = {}, .coverage = {}};

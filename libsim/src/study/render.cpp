@@ -116,6 +116,76 @@ TriangleSurface sides_of(const TriangleSurface& ground, const Grid& grid, const 
     return sides;
 }
 
+/// The rims of a block's walls, as closed chains of its triangles: each wall is two triangles, the first of which runs
+/// along the upper rim from its second corner to its first.
+std::vector<std::vector<Index>> rims_of(const TriangleSurface& sides, Index walls) {
+    std::vector<Index> leaving(sides.size(), none);
+    for (Index wall = 0; wall < walls; ++wall) leaving[sides.triangles[2 * wall][1]] = wall;
+    std::vector<std::uint8_t> seen(walls, 0);
+    std::vector<std::vector<Index>> rims;
+    for (Index first = 0; first < walls; ++first) {
+        if (seen[first]) continue;
+        rims.emplace_back();
+        for (Index wall = first; !seen[wall]; wall = leaving[sides.triangles[2 * wall][0]]) {
+            seen[wall] = 1;
+            rims.back().push_back(wall);
+        }
+    }
+    return rims;
+}
+
+/// Whether all corners of a chain of walls lie within `tolerance` of the straight line between its ends.
+bool is_straight(const Polygon& rim, std::size_t from, std::size_t to, double tolerance) {
+    const Point& a = rim[from % rim.size()];
+    const Point& b = rim[to % rim.size()];
+    const double length = std::hypot(b.x - a.x, b.y - a.y);
+    if (!(length > 0)) return false;
+    for (std::size_t i = from + 1; i < to; ++i) {
+        const Point& p = rim[i % rim.size()];
+        if (std::abs((b.x - a.x) * (p.y - a.y) - (b.y - a.y) * (p.x - a.x)) > tolerance * length) return false;
+    }
+    return true;
+}
+
+/// The last corner up to which the rim runs straight from a corner; straight runs are looked for by doubling.
+std::size_t straight_until(const Polygon& rim, std::size_t from, std::size_t end, double tolerance) {
+    std::size_t good = from + 1, step = 1;
+    while (good + step <= end && is_straight(rim, from, good + step, tolerance)) good += step, step *= 2;
+    for (; step > 0; step /= 2) {
+        if (good + step <= end && is_straight(rim, from, good + step, tolerance)) good += step;
+    }
+    return good;
+}
+
+/// A raster's rim is a staircase wherever it is oblique, and its steps, lit one by one, would stripe a block's sides.
+/// So walls are lit as the straight runs are that stay within a cell of them.
+void light_sides_by_runs(render::Model& model, double cell_m) {
+    const TriangleSurface& sides = model.sides;
+    const auto is_wall = [&](const auto& t) {
+        return sides.z[t[0]] != sides.z[t[2]] || sides.z[t[1]] != sides.z[t[2]];
+    };
+    const auto base = std::ranges::find_if_not(sides.triangles, is_wall);
+    const auto walls = static_cast<Index>((base - sides.triangles.begin()) / 2);
+    model.side_normals.assign(sides.triangles.size(), {0, 0, -1});
+    model.side_clearance = 2 * cell_m;
+    for (const std::vector<Index>& chain : rims_of(sides, walls)) {
+        Polygon rim;
+        for (const Index wall : chain) {
+            const Index from = sides.triangles[2 * wall][1];
+            rim.push_back({sides.x[from], sides.y[from]});
+        }
+        for (std::size_t from = 0; from < rim.size();) {
+            const std::size_t to = straight_until(rim, from, rim.size(), cell_m);
+            const Point& a = rim[from];
+            const Point& b = rim[to % rim.size()];
+            const render::Vector outward = render::unit({b.y - a.y, a.x - b.x, 0});
+            for (; from < to; ++from) {
+                model.side_normals[2 * chain[from]] = model.side_normals[2 * chain[from] + 1] = outward;
+            }
+        }
+    }
+}
+
 render::Model model_of(const Raster& raster, const RenderOptions& o) {
     const LocalMetres local = local_metres(raster);
     render::Model model{
@@ -135,6 +205,7 @@ render::Model model_of(const Raster& raster, const RenderOptions& o) {
     }
     if (o.sides.value_or(PictureSides::block) == PictureSides::block && o.style == PictureStyle::surface) {
         model.sides = sides_of(model.ground, raster.grid, local);
+        light_sides_by_runs(model, std::max(raster.grid.east_west[0], raster.grid.north_south[0]));
     }
     return model;
 }

@@ -21,6 +21,9 @@ struct Model {
     std::vector<Rgb> color;  ///< reflectance of each of the ground's vertices, 0–1
     TriangleSurface sides;
     Rgb side_color;
+    std::vector<Vector> side_normals =
+        {};                     ///< unit vectors by which each of the sides' triangles is lit; empty: its own
+    double side_clearance = 0;  ///< with these: the sides are lit as if they stood so much further out
     Shading shading = Shading::smooth;
 };
 
