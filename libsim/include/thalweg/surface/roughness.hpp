@@ -23,12 +23,12 @@ struct FractalRoughness {
 /// is cut into four by the middles of its edges, again and again; a middle lies half-way between its edge's ends in
 /// height, and is then displaced by a normal number of variance
 ///     s(L)²·(2^(−2H) − 1/4)·2/3,    s(L) = amplitude·(L/reference)^H,
-/// L the edge's length. The differences in height along the halves of an edge then have a variance of s²/4 + that, those
-/// along the edges between two middles s²/4 + twice that; there are as many of the one as of the other, and their mean is
-/// s(L/2)². (Fournier et al. displace by the whole of it, what fractional Brownian motion has along a line; in the plane
-/// that is too much.) Edges no longer than `finest_m` are not displaced any more; the mesh's own vertices stay at 0. So
-/// over distances well above `finest_m` and well below the mesh's edges differences in height grow as distance^H;
-/// beyond, no further.
+/// L the edge's length. The differences in height along the halves of an edge then have a variance of s²/4 + that,
+/// those along the edges between two middles s²/4 + twice that; there are as many of the one as of the other, and their
+/// mean is s(L/2)². (Fournier et al. displace by the whole of it, what fractional Brownian motion has along a line; in
+/// the plane that is too much.) Edges no longer than `finest_m` are not displaced any more; the mesh's own vertices
+/// stay at 0. So over distances well above `finest_m` and well below the mesh's edges differences in height grow as
+/// distance^H; beyond, no further.
 ///
 /// A displacement is a function of the seed and of the edge, the vertices by their numbers, so the triangles on both
 /// sides of an edge have the same: the roughness is continuous, and the same for any number of threads and for places
@@ -36,7 +36,8 @@ struct FractalRoughness {
 /// along an edge nothing is displaced there.
 ///
 /// At the centres of the raster's cells, added to its values; outside the mesh nothing is. Nothing is stored but the
-/// way down to each place: O(cells × levels), about 0.1 µs per cell and level. Throws Error unless there is one share
+/// way down to each place: O(cells × levels); measured on one thread 0.10 and 0.11 µs per cell and level (2.1e6 cells,
+/// from 100 m down to 6.25 and to 0.39; 14 to 15 random gathers from memory). Throws Error unless there is one share
 /// per vertex, and for numbers beyond those above.
 void add_roughness(const Mesh&, std::span<const double> share, const FractalRoughness&, Raster&);
 
