@@ -237,6 +237,26 @@ TEST_CASE("a GeoPackage that cannot be written whole is an error and leaves noth
     }
 }
 
+TEST_CASE("Layers have a spatial index up to the size where it would take most of the time", "[geopackage]") {
+    const TempFolder folder;
+    GDALAllRegister();
+    const auto is_indexed = [&](std::size_t rows) {
+        Table table{.name = "points", .columns = {}, .kind = GeometryKind::point, .geometry = {}};
+        table.geometry.assign(rows, {{1, 2}});
+        io::write_geopackage(folder / "points.gpkg", {table}, "");
+        const GDALDatasetUniquePtr file(GDALDataset::Open((folder / "points.gpkg").c_str(), GDAL_OF_VECTOR));
+        REQUIRE(file->GetLayerByName("points")->GetFeatureCount() == static_cast<GIntBig>(rows));
+        OGRLayer* answer = file->ExecuteSQL("SELECT HasSpatialIndex('points', 'geom')", nullptr, nullptr);
+        REQUIRE(answer != nullptr);
+        const OGRFeatureUniquePtr row(answer->GetNextFeature());
+        const bool indexed = row->GetFieldAsInteger(0) == 1;
+        file->ReleaseResultSet(answer);
+        return indexed;
+    };
+    CHECK(is_indexed(3));
+    CHECK_FALSE(is_indexed(io::most_indexed_rows + 1));
+}
+
 TEST_CASE("Styles stand where QGIS looks for them, each the default of its layer") {
     const TempFolder temp;
     std::vector<Table> layers = three_layers();
@@ -254,8 +274,8 @@ TEST_CASE("Styles stand where QGIS looks for them, each the default of its layer
     CHECK(std::string(styles->GetFIDColumn()) == "id");
     const OGRFeatureDefn& columns = *styles->GetLayerDefn();
     const std::vector<std::string> names{"f_table_catalog", "f_table_schema", "f_table_name", "f_geometry_column",
-                                         "styleName", "styleQML", "styleSLD", "useAsDefault",
-                                         "description", "owner", "ui", "update_time"};
+                                         "styleName",       "styleQML",       "styleSLD",     "useAsDefault",
+                                         "description",     "owner",          "ui",           "update_time"};
     REQUIRE(columns.GetFieldCount() == static_cast<int>(names.size()));
     for (std::size_t i = 0; i < names.size(); ++i) {
         CHECK(columns.GetFieldDefn(static_cast<int>(i))->GetNameRef() == names[i]);

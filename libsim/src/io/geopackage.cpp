@@ -164,6 +164,7 @@ class PackageWriter {
         CPLStringList options;
         options.SetNameValue("FID", free_name(table, "fid").c_str());
         options.SetNameValue("GEOMETRY_NAME", geometry_column(table).c_str());
+        if (row_count(table) > most_indexed_rows) options.SetNameValue("SPATIAL_INDEX", "NO");
         const OGRwkbGeometryType type = wkb_type(table.kind);
         OGRLayer* layer =
             dataset_->CreateLayer(table.name.c_str(), type == wkbNone ? nullptr : &crs, type, options.List());
