@@ -92,6 +92,7 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         study = Path(folder) / "study"
         subprocess.run([THALWEG, "run", SOURCE / "validation" / "jacksboro.toml", "--out", study, "--no-figures",
+                        "--set", "study.realisations=2",
                         "--quiet"], check=True)
         growth = Path(folder) / "growth"
         subprocess.run([THALWEG, "fit", SOURCE / "validation" / "data" / "jacksboro.tif", "--method", "growth", "--out",

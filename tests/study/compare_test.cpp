@@ -90,6 +90,19 @@ std::filesystem::path rough_terrain(const TempFolder& temp, const std::string& n
     return temp / name;
 }
 
+/// A network and its terrain, as `thalweg grow` writes them.
+std::filesystem::path grown_folder(const TempFolder& temp, const std::string& name, std::uint64_t seed) {
+    Experiment e;
+    e.seed = seed;
+    e.basin.outline = std::vector<Point>{{0, 0}, {4000, 500}, {3000, 5000}, {-1000, 4000}};
+    e.basin.trunk = std::vector<Point>{{0, 0}, {1500, 3500}};
+    e.growth.channel_maintenance_m = 400;
+    e.output.resolution = 200;
+    std::filesystem::create_directories(temp / name);
+    study::grow(e, temp / name, {});
+    return temp / name;
+}
+
 }  // namespace
 
 TEST_CASE("The slope-area distance is the root mean square over the areas both curves have, in dex") {
@@ -304,13 +317,7 @@ TEST_CASE("A finer terrain of which only the measures are left is warned of", "[
 TEST_CASE("A grown terrain on larger cells still leaves at its outlet alone, so that all of it counts",
           "[compare][cells]") {
     const TempFolder temp;
-    Experiment e;
-    e.basin.outline = std::vector<Point>{{0, 0}, {4000, 500}, {3000, 5000}, {-1000, 4000}};
-    e.basin.trunk = std::vector<Point>{{0, 0}, {1500, 3500}};
-    e.growth.channel_maintenance_m = 400;
-    e.output.resolution = 200;
-    std::filesystem::create_directories(temp / "grown");
-    study::grow(e, temp / "grown", {});
+    grown_folder(temp, "grown", 1);
     const auto coarse = rough_terrain(temp, "coarse.tif", 60, 60);
     const Json ab = compared(temp, temp / "grown", coarse, 1e5);
     CHECK(ab["cells"]["resampled"] == "a");
@@ -320,4 +327,55 @@ TEST_CASE("A grown terrain on larger cells still leaves at its outlet alone, so 
     CHECK(ab["a"]["channels"]["outlets"] == 1);
     const double basin_m2 = 1.775e+07;  // by the shoelace formula
     CHECK(ab["a"]["channels"]["basin_area_m2"].get<double>() == Approx(basin_m2).epsilon(0.01));
+}
+
+TEST_CASE("A difference is judged by those between realisations with other seeds", "[compare][scale]") {
+    const TempFolder temp;
+    const auto grown = grown_folder(temp, "grown", 1), dem = rough_terrain(temp, "dem.tif", 120, 25);
+    CompareOptions options;
+    options.measure.channel_area_m2 = 1e5;
+    options.realisations = 3;
+    std::filesystem::create_directories(temp / "judged");
+    const Json judged = Json::parse(compare(dem, grown, options, temp / "judged", {}));
+    CHECK(judged["realisations"] == 3);
+    CHECK(std::distance(std::filesystem::directory_iterator(temp / "judged"), {}) == 1);  // nothing of them is left
+
+    // The same by hand: the terrains of the next three seeds, compared in pairs.
+    const auto second = grown_folder(temp, "second", 2), third = grown_folder(temp, "third", 3),
+               fourth = grown_folder(temp, "fourth", 4);
+    const Json pairs[] = {compared(temp, second, third, 1e5), compared(temp, second, fourth, 1e5),
+                          compared(temp, third, fourth, 1e5)};
+    const Json plain = compared(temp, dem, grown, 1e5);
+    int with_scale = 0;
+    for (std::size_t k = 0; k < judged["aspects"].size(); ++k) {
+        const Json& aspect = judged["aspects"][k];
+        INFO(aspect["name"]);
+        CHECK(aspect["distance"] == plain["aspects"][k]["distance"]);
+        CHECK(plain["aspects"][k]["scale"].is_null());
+        CHECK(plain["aspects"][k]["verdict"] == "not judged");
+        CHECK(aspect["scale"].is_null() == aspect["distance"].is_null());
+        if (aspect["distance"].is_null()) continue;  // the drawn DEM has no second order
+        ++with_scale;
+        std::vector<double> distances;
+        for (const Json& pair : pairs) distances.push_back(pair["aspects"][k]["distance"]);
+        std::ranges::sort(distances);
+        CHECK(aspect["scale"].get<double>() == Approx(distances[1]).epsilon(1e-12));
+        const double own = aspect["distance"];
+        const auto as_far = std::ranges::count_if(distances, [&](double each) { return each >= own; });
+        CHECK(aspect["share_as_far"].get<double>() == Approx(static_cast<double>(as_far) / 3));
+        CHECK(aspect["verdict"] == (as_far == 0 ? "beyond the model's own scatter" : "within the model's own scatter"));
+    }
+    CHECK(with_scale > 5);
+}
+
+TEST_CASE("One realisation, or none to be had, is refused", "[compare][scale]") {
+    const TempFolder temp;
+    const auto dem = slope_of(temp, "dem.tif", 60);
+    CompareOptions options;
+    std::filesystem::create_directories(temp / "out");
+    options.realisations = 20;
+    CHECK(error_of([&] { compare(dem, dem, options, temp / "out", {}); }).find("neither side") != std::string::npos);
+    options.realisations = 1;
+    CHECK(error_of([&] { compare(dem, dem, options, temp / "out", {}); }).find("at least 2") != std::string::npos);
+    CHECK(std::filesystem::is_empty(temp / "out"));
 }

@@ -169,6 +169,7 @@ TEST_CASE("The fit of a study is that of its basin with the study's exponent, up
     e.study.area_max_m2 = 1e7;
     e.river.n = 2;
     e.deposition.g = 0.5;
+    e.study.realisations = 2;
     std::filesystem::create_directory(temp / "study");
     run_study(e, Figures::leave_out, temp / "study", {});
     const Json in_study = Json::parse(test::bytes_of(temp / "study/fit/fit.json"));
@@ -187,6 +188,11 @@ TEST_CASE("The fit of a study is that of its basin with the study's exponent, up
     CHECK(in_study["uplift_sd_m_per_yr"] == 1e-4);
     CHECK(in_study["area_range_m2"][0].get<double>() >= 1e6);
     CHECK(in_study["area_range_m2"][1].get<double>() <= 1e7);
+
+    // Two realisations have one distance.
+    const Json comparison = Json::parse(test::bytes_of(temp / "study/compare/comparison.json"));
+    CHECK(comparison["aspects"][1]["scale"].get<double>() > 0);
+    CHECK(comparison["aspects"][1]["scale"] == comparison["aspects"][1]["scale_q95"]);
 
     // What was simulated is what was fitted.
     const Experiment simulated = read_experiment(temp / "study/simulate/experiment.toml");

@@ -331,7 +331,16 @@ def comparison(study):
         cells[2] += footnotes.mark(_sides_named(aspect.get("distance_definition") or ""))
         rows.append([escape(title) + (f" ({quantity})" if quantity else ""), *cells])
     head = ["aspect", REAL, SYNTHETIC, "distance", "scale (model’s own spread)", "verdict"]
-    return table(head, rows) + footnotes.html()
+    return table(head, rows) + _scale_words(study.comparison) + footnotes.html()
+
+
+def _scale_words(content):
+    """How verdicts come about; nothing where none are given."""
+    count = content.get("realisations")
+    if not count:
+        return ""
+    return (f"<p>The model was run with {count} other seeds. The scale is the median distance between two of these terrains; a "
+            "difference is beyond the model’s own scatter where fewer than one in twenty of their pairs differ as much.</p>")
 
 
 def _sides_named(definition):
@@ -407,11 +416,15 @@ def _grown_comparison(study):
     if not study.grown:
         return ""
     eroded = {aspect["name"]: aspect for aspect in study.comparison.get("aspects") or []}
+    judged = bool(study.grown_comparison.get("realisations"))
+    keys = ("distance", "scale") if judged else ("distance",)
     rows = [[escape(ASPECTS.get(aspect["name"], aspect["name"].replace("_", " ").capitalize())),
-             show(eroded.get(aspect["name"], {}).get("distance")), show(aspect.get("distance"))]
+             *(show(side.get(key)) for side in (eroded.get(aspect["name"], {}), aspect) for key in keys),
+             *([escape(aspect.get("verdict") or DASH)] if judged else [])]
             for aspect in study.grown_comparison.get("aspects") or []]
+    head = [SYNTHETIC, "its scale", GROWN, "its scale", "verdict on the grown one"] if judged else [SYNTHETIC, GROWN]
     return ("<p>Distances from the real terrain, defined as in the section <i>How far apart</i>; smaller is closer.</p>"
-            + table(["aspect", SYNTHETIC, GROWN], rows))
+            + table(["aspect", *head], rows))
 
 
 def notes(study):

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "study/ingest.hpp"
+#include "study/realisations.hpp"
 #include "study/report_json.hpp"
 #include "study/results.hpp"
 #include "thalweg/core/error.hpp"
@@ -261,9 +262,10 @@ double area_between(const Curve& a, const Curve& b) {
 }
 
 Json aspect(const char* name, const char* quantity, double a, double b, double distance, const char* definition) {
-    return {{"name", name},     {"quantity", quantity},         {"a", number(a)},
-            {"b", number(b)},   {"distance", number(distance)}, {"distance_definition", definition},
-            {"scale", nullptr}, {"verdict", "not judged"}};
+    return {{"name", name},           {"quantity", quantity},         {"a", number(a)},
+            {"b", number(b)},         {"distance", number(distance)}, {"distance_definition", definition},
+            {"scale", nullptr},       {"scale_q95", nullptr},         {"share_as_far", nullptr},
+            {"verdict", "not judged"}};
 }
 
 Json slope_area_aspect(const Json& a, const Json& b) {
@@ -384,6 +386,103 @@ Json all_aspects(const Side& a, const Side& b) {
             number_aspect("hack", "exponent", "/hack/exponent", in_a, in_b)};
 }
 
+/// A model behind one of the sides, which can be run with other seeds.
+struct Model {
+    fs::path folder;
+    double times = 1;  ///< by which its cells are larger where it is measured
+};
+
+std::vector<Model> models_of(const Side& a, const Side& b, const CompareOptions& options) {
+    std::vector<Model> models;
+    for (const Side* side : {&a, &b}) {
+        if (!side->raster || side->is_dem) continue;
+        models.push_back({side->path, side->brought_from_m ? cell_size(*side) / *side->brought_from_m : 1});
+    }
+    if (options.model_of_b) models.push_back({*options.model_of_b});
+    if (options.realisations == 1) {
+        throw Error("one realisation has no distance from another: ask for at least 2, or better for 20");
+    }
+    if (models.empty() && options.realisations > 0) {
+        throw Error(
+            "--realisations runs a model with other seeds, and neither side is the folder of a simulate or grow run");
+    }
+    return models;
+}
+
+/// What the model makes with another seed, measured as the model's own terrain is.
+Side measured_realisation(const Model& model, Index number, const MeasureOptions& options, double threshold_m2,
+                          const fs::path& scratch) {
+    Side side{.path = model.folder, .raster = realisation(model.folder, number, scratch)};
+    Raster& raster = side.raster->raster;
+    if (model.times > 1) raster = io::on_larger_cells(raster, model.times);
+    if (kind_of(model.folder) == ResultKind::grown) side.outlet = grown_outlet(model.folder, raster);
+    measure_side(side, options, threshold_m2);
+    side.raster.reset();
+    return side;
+}
+
+/// Distances between any two realisations of a model, by aspect; those that are not known are left out.
+using Spread = std::vector<std::vector<double>>;
+
+Spread spread_of(const Model& model, const CompareOptions& options, double threshold_m2, const fs::path& folder,
+                 const Messages& messages) {
+    std::vector<Side> made;
+    Spread spread;
+    for (Index i = 1; i <= options.realisations; ++i) {
+        messages.progress(
+            fmt::format("'{}' with other seeds: {} of {}", model.folder.filename().string(), i, options.realisations));
+        made.push_back(measured_realisation(model, i, options.measure, threshold_m2, folder / ".realisation"));
+        for (std::size_t j = 0; j + 1 < made.size(); ++j) {
+            const Json aspects = all_aspects(made[j], made.back());
+            spread.resize(aspects.size());
+            for (std::size_t k = 0; k < aspects.size(); ++k) {
+                const Json& distance = aspects[k].at("distance");
+                if (distance.is_number()) spread[k].push_back(distance.get<double>());
+            }
+        }
+    }
+    return spread;
+}
+
+/// Judges one aspect by the distances between realisations: were the sides two of them, theirs would be one of these.
+void judge(Json& aspect, const std::vector<double>& distances) {
+    constexpr double rare = 0.05;
+    if (!aspect.at("distance").is_number() || distances.empty()) return;
+    const double distance = aspect.at("distance").get<double>();
+    const auto as_far = std::ranges::count_if(distances, [&](double each) { return each >= distance; });
+    const double share = static_cast<double>(as_far) / static_cast<double>(distances.size());
+    aspect["scale"] = quantile(distances, 0.5);
+    aspect["scale_q95"] = quantile(distances, 1 - rare);
+    aspect["share_as_far"] = share;
+    aspect["verdict"] = share < rare ? "beyond the model's own scatter" : "within the model's own scatter";
+}
+
+void judge_all(Json& aspects, const std::vector<Spread>& spreads) {
+    for (std::size_t k = 0; k < aspects.size(); ++k) {
+        std::vector<double> widest;
+        for (const Spread& spread : spreads) {
+            if (spread.empty() || spread[k].empty()) continue;
+            if (widest.empty() || quantile(spread[k], 0.5) > quantile(widest, 0.5)) widest = spread[k];
+        }
+        judge(aspects[k], widest);
+    }
+}
+
+/// On what the verdicts rest.
+std::string note_of_scale(const std::vector<Model>& models, Index realisations) {
+    if (realisations == 0 || models.empty()) {
+        return "scale: the spread between realisations of a model (with scale_q95 and share_as_far) is not computed, "
+               "so no "
+               "difference is judged; --realisations 20 does where a side is the folder of a simulate or grow run";
+    }
+    std::string names;
+    for (const Model& model : models) names += (names.empty() ? "'" : ", '") + model.folder.filename().string() + "'";
+    return fmt::format(
+        "realisations: {} of {} with the seeds that follow; scale is the median distance between two of them; null "
+        "where they have nothing in common by which to measure it",
+        realisations, names);
+}
+
 /// What of a side the figures need: its name, and the measures compared.
 Json side_json(const Side& side) {
     Json json{{"name", side.path.filename().string()}};
@@ -397,8 +496,7 @@ Json side_json(const Side& side) {
 }
 
 std::vector<std::string> notes_of(const Side& a, const Side& b, const Json& aspects) {
-    std::vector<std::string> notes{
-        "scale: the spread between realisations of a model is not computed, so no difference is judged"};
+    std::vector<std::string> notes;
     for (const Side* side : {&a, &b}) {
         if (!side->brought_from_m) continue;
         notes.push_back(fmt::format("cells: '{}' was brought from cells of {:.4g} m to the other side's, of {:.4g} m",
@@ -438,19 +536,29 @@ std::string compare(const fs::path& a_path, const fs::path& b_path, const Compar
     const double threshold = common_threshold(a, b, options);
     refuse_idle_options(a, b, options);
     if (options.cells == CompareCells::common) bring_to_one_size(a, b, messages);
+    const std::vector<Model> models = models_of(a, b, options);
     messages.progress("measuring both sides");
     measure_side(a, options.measure, threshold);
     measure_side(b, options.measure, threshold);
     try {
-        const Json aspects = all_aspects(a, b);
+        Json aspects = all_aspects(a, b);
+        std::vector<Spread> spreads;
+        if (options.realisations > 0) {
+            for (const Model& model : models) {
+                spreads.push_back(spread_of(model, options, threshold, folder, messages));
+            }
+        }
+        judge_all(aspects, spreads);
         std::vector<std::string> notes = unlike_rulers(a, b, options);
         for (const std::string& note : notes) messages.warning(note);
+        notes.push_back(note_of_scale(models, options.realisations));
         const auto of_sides = notes_of(a, b, aspects);
         notes.insert(notes.end(), of_sides.begin(), of_sides.end());
         const Json comparison{{"a", side_json(a)},
                               {"b", side_json(b)},
                               {"channel_threshold_area_m2", threshold},
                               {"cells", cells_json(a, b, options)},
+                              {"realisations", options.realisations},
                               {"aspects", aspects},
                               {"notes", notes}};
         std::string text = text_of(comparison);

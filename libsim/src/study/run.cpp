@@ -154,7 +154,12 @@ void run_erosion_steps(const StudiedBasin& b, const fs::path& folder, const Mess
              messages);
     const NamedRaster synthetic = read_dem(folder / "simulate/elevation.tif", {}, {});
     analyze(synthetic, b.options, step_folder(folder, "synthetic"), messages);
-    compare(folder / "basin", folder / "synthetic", {}, step_folder(folder, "compare"), messages);
+    compare(folder / "basin", folder / "synthetic",
+            {.read = {},
+             .measure = b.options,
+             .realisations = b.experiment.study.realisations,
+             .model_of_b = folder / "simulate"},
+            step_folder(folder, "compare"), messages);
     warn_of_relief(folder, messages);
 }
 

@@ -56,7 +56,9 @@ void run_growth_steps(const Experiment& e, const Catchment& catchment, const Mea
     measuring.catchment_outlet =
         nearest_cell_with_data(grown.raster, {outlet.x / fit.site.unit_m, outlet.y / fit.site.unit_m});
     analyze(grown, measuring, step_folder(study, "grown"), messages);
-    compare(study / "basin", study / "grown", {}, step_folder(study, "compare_grown"), messages);
+    compare(study / "basin", study / "grown",
+            {.read = {}, .measure = measuring, .realisations = e.study.realisations, .model_of_b = study / "grow"},
+            step_folder(study, "compare_grown"), messages);
 }
 
 }  // namespace thalweg::study

@@ -171,6 +171,7 @@ struct Experiment {
         std::optional<double> channel_area_m2;
         std::optional<double> area_min_m2;
         std::optional<double> area_max_m2;
+        Index realisations = 0;
     } study;
 };
 
@@ -443,6 +444,11 @@ void describe(AnyExperiment& e, Visit visit) {
           e.study.channel_area_m2);
     visit(Field{"study.area_min_m2", "m2", "smallest drainage area in the fit", 0}, e.study.area_min_m2);
     visit(Field{"study.area_max_m2", "m2", "largest drainage area in the fit", 0, infinity, true}, e.study.area_max_m2);
+    visit(
+        Field{"study.realisations", "",
+              "each model is made with so many other seeds, by which its distances are judged; 0: none, 20 are enough",
+              0, 1000},
+        e.study.realisations);
 }
 
 /// Reads an experiment file (TOML), applies overrides of the form "river.k=2e-5" and checks every value. Paths are
