@@ -92,6 +92,27 @@ TEST_CASE("A single scattered river has errors from its tributaries, the same in
     }
 }
 
+TEST_CASE(
+    "With few tributaries the error is that of the interval, or there is none where the interval ends with the range") {
+    int with_error = 0, at_an_end = 0;
+    for (std::uint32_t seed = 0; seed < 40; ++seed) {
+        const Concavity best = concavity(rivers(1, 14, seed % 2 ? 0.15 : 0.45, seed, 0.8, straight));
+        for (const Estimate& one : {best.collinearity, best.disorder}) {
+            const auto [low, high] = one.interval95;
+            if (std::isnan(low)) continue;
+            CAPTURE(seed, one.value, one.standard_error, low, high);
+            CHECK(low >= 0);
+            CHECK(high <= 1.5);
+            const bool ends = low == 0 || high == 1.5;
+            CHECK(std::isnan(one.standard_error) == ends);
+            ++(ends ? at_an_end : with_error);
+            if (!ends) CHECK(one.standard_error == Approx((high - low) / 2 / 1.96).epsilon(1e-4));
+        }
+    }
+    CHECK(with_error > 10);
+    CHECK(at_an_end > 3);
+}
+
 TEST_CASE("A river without tributaries, a flat one and none at all have no collinearity and no disorder") {
     const auto none_of = [](const Profile& profile) {
         const Concavity c = concavity(profile);

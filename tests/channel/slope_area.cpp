@@ -339,3 +339,41 @@ TEST_CASE("The turnover is the steepest of the bins, and its range those that er
     CHECK(std::isnan(hillslope_turnover(std::span(bins).subspan(2)).area_m2));
     CHECK(std::isnan(hillslope_turnover({}).range_m2[0]));
 }
+
+TEST_CASE("Only nodes in use enter, as points and in bins") {
+    // Ten nodes in a row that fall by 1, 2, 3, … m over 100 m each, of which every third counts.
+    std::vector<Index> receiver{none};
+    std::vector<double> height{0}, area{11};
+    std::vector<std::uint8_t> used{0};
+    for (Index node = 1; node <= 10; ++node) {
+        receiver.push_back(node - 1);
+        height.push_back(height.back() + node);
+        area.push_back(11.0 - node);
+        used.push_back(node % 3 == 0);
+    }
+    const auto graph = support::graph_of(receiver, 100);
+    const auto points = node_slopes(graph, area, height, used);
+    REQUIRE(points.size() == 3);
+    for (std::size_t i = 0; i < 3; ++i) {
+        CHECK(points[i].node == 3 * (i + 1));
+        CHECK(points[i].slope == Approx(0.03 * (i + 1)));
+        CHECK(points[i].area_m2 == 8 - 3.0 * i);
+    }
+    const NodeSlopeBins binned = node_slope_bins(graph, area, height, used);
+    CHECK(binned.looked_at == 3);
+    REQUIRE(binned.bins.size() == 3);
+    CHECK(binned.bins[0].slope == Approx(0.09));
+    CHECK(binned.bins[2].area_m2 == Approx(8));
+}
+
+TEST_CASE("Errors of bins lean on the scatter that all bins show, by hand") {
+    // Variance of a point, from n·(se/slope)²: 0.03 with 2 degrees of freedom, 0.24 with 5: pooled 0.18, counting 4.
+    const std::vector<SlopeAreaBin> bins{{1e5, 0.1, 0.01, 3}, {2e5, 0.05, 0.01, 6}, {4e5, 0.03, std::nan(""), 1}};
+    const auto errors = bin_errors(bins, 0);
+    CHECK(errors[0] == Approx(std::sqrt((4 * 0.18 + 2 * 0.03) / 6 / 3)));
+    CHECK(errors[1] == Approx(std::sqrt((4 * 0.18 + 5 * 0.24) / 9 / 6)));
+    CHECK(errors[2] == Approx(std::sqrt(0.18)));
+    const auto floored = bin_errors(bins, 0.1);
+    CHECK(floored[0] == Approx(0.1 * std::log(10.0)));
+    CHECK(floored[2] == Approx(std::sqrt(0.18)));
+}

@@ -2,6 +2,7 @@
 #include "thalweg/channel/concavity.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -39,14 +40,28 @@ std::vector<double> mean_misfits(const MisfitTable& table, std::span<const doubl
     return means;
 }
 
-/// Where the parabola through the least value and its two neighbours has its vertex; NaN at an end.
+constexpr double last_theta = (theta_count - 1) * theta_step;
+
+/// Where the parabola through the least value and its two neighbours has its vertex; the first or the last θ where the
+/// least is there; NaN where no θ has a misfit.
 double least_at(std::span<const double> misfit) {
     const auto least = std::ranges::min_element(misfit) - misfit.begin();
-    if (least == 0 || least + 1 == theta_count) return nan;
+    if (!std::isfinite(misfit[least])) return nan;
+    if (least == 0 || least + 1 == theta_count) return static_cast<double>(least) * theta_step;
     const double left = misfit[least - 1], middle = misfit[least], right = misfit[least + 1];
     const double curvature = left - 2 * middle + right;
     const double shift = curvature > 0 && std::isfinite(curvature) ? (left - right) / (2 * curvature) : 0;
     return (static_cast<double>(least) + shift) * theta_step;
+}
+
+/// NaN at the first and the last θ, beyond which the least may lie.
+double inside(double theta) { return theta > 0 && theta < last_theta ? theta : nan; }
+
+/// Half the width of the interval in units of the normal law's, so that error and interval never say two things (the
+/// resamples of few tributaries have outliers); NaN where an end lies at the first or last θ and may lie beyond.
+double error_of(const std::array<double, 2>& interval95) {
+    constexpr double normal_half_width = 1.959964;
+    return 0.5 * (inside(interval95[1]) - inside(interval95[0])) / normal_half_width;
 }
 
 /// `theta_of(times)`: the estimate when each block counts as often as it was drawn.
@@ -55,7 +70,7 @@ Estimate with_bootstrap(Index blocks, const ConcavityOptions& options, std::uint
                         Index resamples) {
     Estimate estimate{nan, nan, {nan, nan}};
     if (blocks == 0) return estimate;
-    estimate.value = theta_of(std::vector<double>(blocks, 1));
+    estimate.value = inside(theta_of(std::vector<double>(blocks, 1)));
     if (std::isnan(estimate.value) || blocks < options.smallest_sample) return estimate;
     Random random(options.seed, stream);
     std::vector<double> values;
@@ -65,8 +80,8 @@ Estimate with_bootstrap(Index blocks, const ConcavityOptions& options, std::uint
         const double theta = theta_of(times);
         if (!std::isnan(theta)) values.push_back(theta);
     }
-    estimate.standard_error = standard_deviation(values);
     estimate.interval95 = {quantile(values, 0.025), quantile(values, 0.975)};
+    estimate.standard_error = error_of(estimate.interval95);
     return estimate;
 }
 
@@ -90,7 +105,7 @@ struct Rivers {
     MainStreams streams;
     std::vector<Index> tributary;  ///< by row: number of the tributary of a trunk it belongs to, `none` on the trunk
     Index tributaries = 0;
-    bool many = false;  ///< enough rivers to resample them; else their tributaries are
+    bool many = false;             ///< enough rivers to resample them; else their tributaries are
     std::vector<Index> by_height;  ///< rows that count, river by river, upwards
     std::vector<Index> begin;      ///< count + 1: where each river begins in it
 };
@@ -184,7 +199,8 @@ Trunks trunks_of(const Rivers& r) {
 
 /// Height of the trunk at χ, linear between its nodes; NaN beyond its head.
 double trunk_height(const std::vector<Index>& trunk, const Rivers& r, std::span<const double> chi_m, double at) {
-    const auto above = std::upper_bound(trunk.begin(), trunk.end(), at, [&](double x, Index row) { return x < chi_m[row]; });
+    const auto above =
+        std::upper_bound(trunk.begin(), trunk.end(), at, [&](double x, Index row) { return x < chi_m[row]; });
     if (above == trunk.end()) return chi_m[trunk.back()] == at ? r.height_m[trunk.back()] : nan;
     if (above == trunk.begin()) return nan;
     const Index low = *(above - 1), high = *above;
@@ -306,7 +322,7 @@ Estimate disorder_estimate(const Rivers& r, const Disorder& d, const ConcavityOp
     constexpr Index fewer = 5;  // each resample costs 61 passes over the sample
     const auto theta_of = [&](const std::vector<double>& times) { return disorder_theta(r, d, times); };
     Estimate e = with_bootstrap(r.tributaries, options, 2, theta_of, std::max<Index>(1, options.resamples / fewer));
-    e.value = least_of(d.by_river)(std::vector<double>(r.count, 1));
+    e.value = inside(least_of(d.by_river)(std::vector<double>(r.count, 1)));
     return e;
 }
 

@@ -28,12 +28,14 @@ struct ConcavityOptions {
 /// - `disorder`: nodes in the order of their elevation have χ in order too (Goren et al. 2014, Hergarten & Robl 2016):
 ///   the least mean over the rivers, by nodes, of (Σ|χ_(i+1) − χ_i| − range of χ)/range of χ. Free of any line.
 ///
-/// Errors are the spread of a bootstrap over the rivers, the interval its 2.5 and 97.5 % quantiles. Where there are fewer
-/// than `smallest_sample` rivers, collinearity and disorder resample the trunks' tributaries instead: the trunk's own
-/// scatter is then not in the error, which is too small (with slopes scattered by a factor of 1.35 from node to node the
-/// interval held the truth in about 60 of 100 single rivers; with twenty of them, in 90 for collinearity and 75 for
-/// disorder, whose least itself is shifted by scatter). NaN for fewer than `smallest_sample` of those as well.
-/// Cost: 61 passes over the nodes.
+/// The interval are the 2.5 and 97.5 % quantiles of a bootstrap over the rivers, the error half its width over 1.96:
+/// both are of the same, where few blocks give a skewed lot with outliers, whose standard deviation may be twice as
+/// large. A resample whose least lies at an end of the range counts there; an interval that ends at 0 or 1.5 may go on
+/// beyond and has no error. Where there are fewer than `smallest_sample` rivers, collinearity and disorder resample the
+/// trunks' tributaries instead: the trunk's own scatter is then not in the error, which is too small (with slopes
+/// scattered by a factor of 1.35 from node to node the interval held the truth in about 60 of 100 single rivers; with
+/// twenty of them, in 90 for collinearity and 75 for disorder, whose least itself is shifted by scatter). NaN for fewer
+/// than `smallest_sample` of those as well. Cost: 61 passes over the nodes.
 struct Concavity {
     Estimate linearity, collinearity, disorder;
 };
