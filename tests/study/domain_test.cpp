@@ -194,3 +194,19 @@ TEST_CASE("In feet, too, a TIN may start from the DEM") {
     const auto highest = std::max_element(domain.start.elevation_m.begin(), domain.start.elevation_m.end());
     CHECK(*highest == 25);
 }
+
+TEST_CASE("A drawn domain across ±180° is as large as one elsewhere") {
+    const TempFolder folder;
+    const auto area_of = [&](const std::string& ring) {
+        Experiment e;
+        e.domain.outline = folder.text("outline.geojson", R"({"type": "Polygon", "coordinates": [)" + ring + "]}");
+        e.domain.nodes = 500;
+        return make_domain(e, Messages{}).area_m2;
+    };
+    const double elsewhere = area_of("[[9.95, -17], [10.05, -17], [10.05, -16.9], [9.95, -16.9], [9.95, -17]]");
+    CHECK(elsewhere == Approx(1.1788e8).epsilon(1e-3));
+    CHECK(area_of("[[179.95, -17], [-179.95, -17], [-179.95, -16.9], [179.95, -16.9], [179.95, -17]]") ==
+          Approx(elsewhere).epsilon(1e-9));
+    CHECK(area_of("[[179.95, -17], [180.05, -17], [180.05, -16.9], [179.95, -16.9], [179.95, -17]]") ==
+          Approx(elsewhere).epsilon(1e-9));
+}
