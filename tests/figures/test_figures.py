@@ -271,6 +271,9 @@ class Figures(unittest.TestCase):
                          "and the grown one", '<i class="grown" title="grown"></i>')
         section = report.grown(both)
         self.assert_says(section, "basin area per channel length, C</th><td>1 067</td>", "<td>m</td>")
+        self.assert_says(section, "verdict on the grown one", "<td>0.0830</td><td>0.0520</td><td>within the model")
+        self.assertIn("20 other seeds", report._scale_words(both.grown_comparison))
+        self.assertEqual(report._scale_words({"realisations": 0}), "")
         self.assertEqual(growth.rows_of(both.growth_fit)[0][0], "divide across from a tributary: spread (0.27)")
 
     def test_the_area_of_a_dot_follows_its_length(self):

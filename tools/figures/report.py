@@ -340,7 +340,8 @@ def _scale_words(content):
     if not count:
         return ""
     return (f"<p>The model was run with {count} other seeds. The scale is the median distance between two of these terrains; a "
-            "difference is beyond the model’s own scatter where fewer than one in twenty of their pairs differ as much.</p>")
+            "difference is beyond the model’s own scatter where fewer than one in twenty of their pairs differ as much. "
+            "With so many aspects, one may well be so by chance.</p>")
 
 
 def _sides_named(definition):
