@@ -209,4 +209,10 @@ TEST_CASE("A drawn domain across ±180° is as large as one elsewhere") {
           Approx(elsewhere).epsilon(1e-9));
     CHECK(area_of("[[179.95, -17], [180.05, -17], [180.05, -16.9], [179.95, -16.9], [179.95, -17]]") ==
           Approx(elsewhere).epsilon(1e-9));
+    // A hole across the line, written as its ring is or a turn away.
+    const std::string ring = "[[179.95, -17], [-179.95, -17], [-179.95, -16.9], [179.95, -16.9], [179.95, -17]], ";
+    const double holed = area_of(ring + "[[179.98, -16.97], [179.98, -16.93], [-179.98, -16.93], [179.98, -16.97]]");
+    CHECK(holed == Approx(0.92 * elsewhere).epsilon(1e-3));
+    CHECK(area_of(ring + "[[-180.02, -16.97], [-180.02, -16.93], [-179.98, -16.93], [-180.02, -16.97]]") ==
+          Approx(holed).epsilon(1e-9));
 }

@@ -77,7 +77,6 @@ Domain outline_domain(const Experiment& e) {
     const bool flat = shapes.geographic && beyond_the_globe(drawn.outer);
     if (shapes.geographic && !flat) {
         drawn.outer = ring_without_jumps("domain.outline", std::move(drawn.outer));
-        for (Polygon& hole : drawn.holes) hole = without_jumps(std::move(hole), drawn.outer.front().x);
     }
     const MapPlane plane =
         plane_about(drawn.outer, shapes.geographic && !flat, shapes.unit_m, flat ? "" : shapes.crs_wkt);

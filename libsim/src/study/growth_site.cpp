@@ -94,8 +94,7 @@ std::vector<Point> drawn_trunk(const Shape& shape, Drawn& outline) {
     if (line.size() > 2) {
         outline.warnings.push_back("basin.trunk: a trunk is straight, and the bends of the drawn line are left out");
     }
-    const std::vector<Point> ends{line.front(), line.back()};
-    return outline.plane.geographic ? without_jumps(ends, outline.outline.front().x) : ends;
+    return {line.front(), line.back()};
 }
 
 constexpr double outlet_may_be_off = 0.01;  // of the outline's extent

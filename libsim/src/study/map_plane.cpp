@@ -34,17 +34,11 @@ bool beyond_the_globe(const std::vector<Point>& places) {
     return std::ranges::any_of(places, [](const Point& p) { return std::abs(p.x) > 360 || std::abs(p.y) > 90; });
 }
 
-std::vector<Point> without_jumps(std::vector<Point> lon_lat_deg, double near_deg) {
-    for (Point& p : lon_lat_deg) {
-        if (std::abs(p.x - near_deg) > 180) p.x -= 360 * std::round((p.x - near_deg) / 360);
-        near_deg = p.x;
+Polygon ring_without_jumps(const std::string& what, Polygon ring) {
+    for (std::size_t i = 1; i < ring.size(); ++i) {
+        const double jump = ring[i].x - ring[i - 1].x;
+        if (std::abs(jump) > 180) ring[i].x -= 360 * std::round(jump / 360);
     }
-    return lon_lat_deg;
-}
-
-Polygon ring_without_jumps(const std::string& what, Polygon lon_lat_deg) {
-    const double first = lon_lat_deg.front().x;
-    Polygon ring = without_jumps(std::move(lon_lat_deg), first);
     if (std::abs(ring.back().x - ring.front().x) <= 180) return ring;
     throw Error(
         fmt::format("{} goes around a pole: bring it to a polar map first, e.g. by ogr2ogr -t_srs EPSG:3413", what));

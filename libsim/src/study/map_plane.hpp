@@ -26,12 +26,10 @@ MapPlane plane_of(const Raster&);
 /// What a vector file without a coordinate system is taken for, though it cannot be: degrees.
 bool beyond_the_globe(const std::vector<Point>&);
 
-/// A line or ring in degrees whose longitudes jump where the map is cut (±180° or 0°/360°), without the jump: every
-/// corner is within half a turn of the one before, the first of `near_deg`.
-std::vector<Point> without_jumps(std::vector<Point> lon_lat_deg, double near_deg);
-
-/// The same for a closed ring, from its first corner's own longitude. Throws Error, beginning with `what`, if it goes
-/// around a pole.
+/// A closed ring in degrees whose longitudes jump where the map is cut (±180° or 0°/360°), without the jump: every
+/// corner is within half a turn of the one before, so that the ring has a middle. What lies within it needs no such
+/// care: the way to the plane takes longitudes a turn apart for the same. Throws Error, beginning with `what`, if the
+/// ring goes around a pole.
 Polygon ring_without_jumps(const std::string& what, Polygon lon_lat_deg);
 
 /// Plane for coordinates of a system whose unit is `unit_m` metres, or degrees, about their middle.
