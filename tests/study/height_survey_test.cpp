@@ -69,6 +69,7 @@ TEST_CASE("Striping is the share of roughness that rows have for themselves, by 
     const HeightSurvey s = survey_heights(raster_of({"drawn", plane_grid(5, 4, 1, 1), d.values}));
     CHECK(s.row_striping == Approx(12.0 / 35 * 4 * (39.0 / 16) * (39.0 / 16) / (4 + 49.0 / 4 + 13.0 / 4)));
     CHECK(s.row_roughness_m == Approx(std::sqrt((4 + 49.0 / 4 + 13.0 / 4) / 12)));
+    CHECK(s.column_roughness_m == Approx(std::sqrt(2 * 1.5 * 1.5 / 10)));  // beside the two threes
     CHECK(s.largest_m == 3);
 }
 
@@ -180,6 +181,60 @@ TEST_CASE("Repeated values, terraces, one value in many cells and oblong cells a
     Raster oblong = plain;
     oblong.grid = plane_grid(60, 80, 10, 2);
     CHECK(hints_of(oblong).find("5 times as wide as high") != std::string::npos);
+    oblong.grid = plane_grid(60, 80, 2, 10);
+    CHECK(hints_of(oblong).find("0.2 times as wide as high") != std::string::npos);
+}
+
+TEST_CASE("Ties, level lines and heights below zero are counted as said, by hand", "[survey]") {
+    const auto survey = [](const char* drawing, Index rows, Index cols) {
+        return survey_heights(raster_of({"drawn", plane_grid(rows, cols, 1, 1), support::draw(drawing).values}));
+    };
+    // Three of -2, three of 0: the lower is the most frequent. Three pairs of rows hold a varied one,
+    // one of them is equal.
+    const HeightSurvey s = survey(R"(
+        5 5 5
+        -2 0 1
+        -2 0 1
+        -2 0 -9)",
+                                  4, 3);
+    CHECK(s.most_frequent_m == -2);
+    CHECK(s.most_frequent_share == Approx(3.0 / 12));
+    CHECK(s.zero_share == Approx(3.0 / 12));
+    CHECK(s.repeated_rows == Approx(1.0 / 3));
+    CHECK(s.repeated_columns == 0);
+    CHECK(s.largest_m == 9);
+    // A level pair says nothing, a level line beside a varied one is a pair that is not equal.
+    CHECK(survey("4 4 4\n4 4 4\n1 2 3\n1 2 3\n", 4, 3).repeated_rows == Approx(1.0 / 2));
+    CHECK(survey("4 4 1 1\n4 4 2 2\n4 4 3 3\n", 3, 4).repeated_columns == Approx(1.0 / 2));
+    // Cells without data are alike.
+    CHECK(survey("1 # 3\n1 # 3\n2 # 5\n", 3, 3).repeated_rows == Approx(1.0 / 2));
+    CHECK(survey("1 1 2\n# # 5\n3 3 4\n", 3, 3).repeated_columns == Approx(1.0 / 2));
+}
+
+TEST_CASE("A value in many cells is hinted at unless it stands on one of the four sides, of which the reader warns",
+          "[survey]") {
+    const Raster plain = hills(60, 80, 2);
+    const auto hints = [&](Index first_row, Index first_col) {
+        Raster raster = plain;
+        for (Index r = 0; r < 20; ++r) {
+            for (Index c = 0; c < 20; ++c) raster.values[std::size_t{first_row + r} * 80 + first_col + c] = -5;
+        }
+        return hints_of(raster).find("exactly -5 m") != std::string::npos;
+    };
+    CHECK(hints(20, 30));
+    CHECK(hints(1, 1));
+    CHECK(hints(39, 59));
+    CHECK_FALSE(hints(0, 30));
+    CHECK_FALSE(hints(40, 30));
+    CHECK_FALSE(hints(20, 0));
+    CHECK_FALSE(hints(20, 60));
+}
+
+TEST_CASE("Roughness that rounding makes is no stripes", "[survey]") {
+    const Raster stairs = raster_of(support::terrain_of(
+        "plane in whole metres", 200, 200, [](Index r, Index c) { return std::round(0.3 * c + 0.013 * r); }));
+    CHECK(hints_of(stairs, 1).find("striped") == std::string::npos);
+    CHECK(hints_of(stairs, 0).find("striped along rows") != std::string::npos);
 }
 
 TEST_CASE("A large raster is sampled alike from all its sides", "[survey]") {

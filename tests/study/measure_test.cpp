@@ -422,6 +422,24 @@ TEST_CASE("Slope–area by cells looks at basins' cells that conditioning left a
     CHECK(changed > 10);
     CHECK(by_cells["cells_left_out"] == changed);
     CHECK(by_cells["cells"].get<int>() + changed == in_basins);
+    // The line is that of the bins of channels; hillslopes of another law do not bend it.
+    std::vector<channel::SlopeAreaBin> of_channels;
+    for (const Json& bin : by_cells["bins"]) {
+        const double error = bin["slope_se"].is_null() ? std::nan("") : bin["slope_se"].get<double>();
+        if (bin["area_m2"] < 20.5 * 8100) continue;
+        of_channels.push_back({bin["area_m2"], bin["slope"], error, bin["count"]});
+    }
+    CHECK(of_channels.size() < by_cells["bins"].size());
+    CHECK(by_cells["theta"].get<double>() == Approx(channel::fit_slope_area(of_channels).theta.value).epsilon(1e-9));
+    CHECK(by_cells["theta"].get<double>() != plain["slope_area_cells"]["theta"].get<double>());
+    // On steps of 30 m some links do not fall.
+    auto stepped = height;
+    for (double& each : stepped) each = 30 * std::round(each / 30);
+    const Statistics coarse = measure_raster(raster_of({"stepped", grid, stepped}), options).statistics;
+    const auto level = std::ranges::count_if(coarse.network.drop_m, [](double drop) { return !(drop > 0); });
+    CHECK(level > 0);
+    CHECK(coarse.slope_area_links.level_share ==
+          Approx(static_cast<double>(level) / static_cast<double>(coarse.network.size())));
     const Table written = io::read_csv(temp / "a" / "slope_area_cells.csv");
     CHECK(std::get<std::vector<double>>(written.columns[1].values).size() == plain["slope_area_cells"]["bins"].size());
     CHECK(std::filesystem::exists(temp / "a" / "slope_area_links.csv"));
@@ -455,4 +473,33 @@ TEST_CASE("What fails meanwhile fails the measuring, once it is done") {
         return std::async(std::launch::async, [] { throw Error("the disk is full"); });
     };
     CHECK(test::error_of([&] { measure_raster(drawn_catchment(), channels_from(200), fail); }) == "the disk is full");
+}
+
+TEST_CASE("Slope–area by cells takes the drainage area of the routing that was asked for") {
+    const Grid grid = plane_grid(60, 70, 90, 90);
+    const Raster raster = raster_of({"steady", grid, support::steady_raster(grid, {.theta = 0.45, .scatter = 0.3}, 6)});
+    for (const Routing routing : {Routing::d8, Routing::dinf, Routing::mfd}) {
+        MeasureOptions options = channels_from(20.5 * 8100);
+        options.edge_basins = terrain::EdgeBasins::keep;
+        options.routing = routing;
+        const RasterMeasurement m = measure_raster(raster, options);
+        const auto& area = routing == Routing::d8 ? m.terrain.drainage_area_m2 : m.terrain.divided_area_m2;
+        std::vector<channel::SlopeAreaPoint> points;
+        for (Index node = 0; node < grid.size(); ++node) {
+            const Index to = m.terrain.graph.receiver[node];
+            if (m.statistics.basin_of[node] == none || to == none) continue;
+            if (m.terrain.elevation_m[node] != raster.values[node] || m.terrain.elevation_m[to] != raster.values[to]) {
+                continue;
+            }
+            const double slope = (raster.values[node] - raster.values[to]) / m.terrain.graph.length[node];
+            points.push_back({area[node], slope});
+        }
+        const auto expected = channel::slope_area_bins(points);
+        const auto& found = m.statistics.slope_area_nodes.law.bins;
+        REQUIRE(found.size() == expected.size());
+        for (std::size_t bin = 0; bin < found.size(); ++bin) {
+            CHECK(found[bin].count == expected[bin].count);
+            CHECK(found[bin].area_m2 == Approx(expected[bin].area_m2));
+        }
+    }
 }

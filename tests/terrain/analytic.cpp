@@ -86,6 +86,33 @@ TEST_CASE("the steepest descent of a plane is its slope times the cosine to the 
     }
 }
 
+TEST_CASE(
+    "between two directions a plane's water takes the nearer one, to a hundredth of a degree, on oblong cells too") {
+    constexpr Index n = 5;
+    constexpr double hundredth = 0.01 * std::numbers::pi / 180;
+    for (const auto& [dx, dy] : {std::pair{1.0, 1.0}, {30.0, 20.0}, {20.0, 50.0}}) {
+        const auto angle_of = [&](Slot slot) {
+            return std::atan2(Grid::row_step[slot] * dy, Grid::col_step[slot] * dx);
+        };
+        for (Slot slot = 0; slot < 8; ++slot) {
+            const Slot next = (slot + 1) % 8;
+            const double between =
+                angle_of(slot) + std::remainder(angle_of(next) - angle_of(slot), 2 * std::numbers::pi) / 2;
+            for (const double aside : {-hundredth, hundredth}) {
+                const double angle = between + aside;
+                const TestTerrain plane = support::terrain_of(
+                    "plane", n, n,
+                    [&, width = dx, height = dy](Index r, Index c) {
+                        return -0.1 * (c * width * std::cos(angle) + r * height * std::sin(angle));
+                    },
+                    dx, dy);
+                INFO("slot " << int(slot) << ", cells of " << dx << " x " << dy);
+                CHECK(Routed(plane).directions[n * n / 2] == (aside < 0 ? slot : next));
+            }
+        }
+    }
+}
+
 TEST_CASE("along the axes of cones and paraboloids slopes tend to the formula's, and all area leaves by the rim") {
     for (const double power : {1.0, 2.0}) {
         double last_error = 1;
