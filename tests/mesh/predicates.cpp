@@ -59,6 +59,8 @@ TEST_CASE("A ring that meets itself is told where, one without area that it has 
     };
     refused({{0, 0}, {2, 2}, {2, 0}, {0, 2}}, "itself at (1, 1)");  // a bow tie, of area 0
     refused({{0, 0}, {4, 2}, {4, 0}, {0, 2}}, "itself at (2, 1)");
+    refused({{0, 0}, {8, 4}, {8, 0}, {0, 2}}, "itself at (2.66");
+    refused({{0, 0}, {4, 0}, {4, 4}, {4, -2}, {0, -2}}, "itself at (4, 0)");        // a spike beyond where it began
     refused({{0, 0}, {2, 0}, {2, 2}, {1, 0}, {0, 2}}, "itself at (1, 0)");          // a corner on a side
     refused({{0, 0}, {4, 0}, {4, 4}, {4, 2}, {0, 2}}, "itself at (4, 2)");          // a spike that runs back on itself
     refused({{0, 0}, {2, 0}, {1, 1}, {2, 2}, {0, 2}, {1, 1}}, "itself at (1, 1)");  // a corner twice

@@ -89,13 +89,10 @@ Kernel::Point_2 common_place(const Side& a, const Side& b) {
 /// Throws Error that says where a ring without repeated corners meets itself.
 [[noreturn]] void refuse_self_meeting(const Polygon& ring) {
     const std::size_t corners = ring.size();
+    // Neighbours need no look: where one runs back on the other, the side after or before it meets the other, too.
     const auto found = meeting({ring}, [&](const Side& a, const Side& b) {
-        if (!CGAL::do_intersect(a.segment, b.segment)) return false;
-        const bool b_follows = (a.number + 1) % corners == b.number;
-        if (!b_follows && (b.number + 1) % corners != a.number) return true;
-        const Side& first = b_follows ? a : b;  // neighbours may meet, but only in their corner
-        const Side& second = b_follows ? b : a;
-        return first.segment.has_on(second.segment.target()) || second.segment.has_on(first.segment.source());
+        const bool neighbors = (a.number + 1) % corners == b.number || (b.number + 1) % corners == a.number;
+        return !neighbors && CGAL::do_intersect(a.segment, b.segment);
     });
     if (!found) throw Error("the outline crosses or touches itself: it must be one simple ring");
     const auto place = common_place(found->first, found->second);
