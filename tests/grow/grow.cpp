@@ -185,6 +185,46 @@ TEST_CASE(
     CHECK(links > 100000);
 }
 
+TEST_CASE("A trunk with bends becomes a stream through them all, with a tributary on the outer side of each") {
+    Random random(20261129, 1);
+    int grown = 0, refused = 0;
+    for (int trial = 0; trial < 400; ++trial) {
+        INFO("trial " << trial);
+        const Basin basin = support::random_bent_basin(random);
+        const Dials dials = support::random_dials(random, basin);
+        Growth growth;
+        try {
+            growth = grow::grow(basin, dials);
+        } catch (const Error& error) {
+            REQUIRE_THAT(error.what(), Catch::Contains("the trunk"));
+            refused += std::string(error.what()).find("straighten it there") != std::string::npos;
+            continue;
+        }
+        ++grown;
+        const Network& network = growth.network;
+        REQUIRE(growth.stopped != StopReason::link_limit);
+        check_partition(network, basin.outline);
+        check_tree(network);
+        check_junctions(network, dials.flint);
+        check_elevations(network, elevations(network, dials.flint, basin.base_level_m));
+        std::size_t passed = 0;
+        for (const Junction& junction : network.junctions) {
+            if (passed == basin.bends.size()) break;
+            if (network.stream[junction.upstream] != 0) continue;
+            const Point bend{basin.bends[passed].x - network.origin.x, basin.bends[passed].y - network.origin.y};
+            const Point& place = network.vertices[junction.vertex];
+            if (std::hypot(bend.x - place.x, bend.y - place.y) > 1e-9 * std::hypot(bend.x, bend.y)) continue;
+            ++passed;
+            const Point below = from_to(network, network.lower[junction.downstream], junction.vertex);
+            const Point above = from_to(network, junction.vertex, network.upper[junction.upstream]);
+            CHECK((below.x * above.y - below.y * above.x > 0) == (junction.side == Side::right));
+        }
+        CHECK(passed == basin.bends.size());
+    }
+    CHECK(grown > 250);
+    CHECK(refused < 100);  // they swing by up to half their length
+}
+
 TEST_CASE("Any place in the basin lies in exactly one polygon") {
     Random random(4, 1);
     for (int trial = 0; trial < 20; ++trial) {

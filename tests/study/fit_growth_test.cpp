@@ -40,12 +40,18 @@ TEST_CASE("A fit of growth writes a basin and dials that read back as they were 
     const Json fit = Json::parse(fit_growth(jacksboro, {}, folder / "", {}));
     const Experiment e = read_experiment(folder / "growth.toml");
     const GrowthSite site = growth_site(e, {});
-    const GrowthSite own = growth_site(largest_complete_catchment(read_dem(jacksboro, {}, {}).raster, {}));
+    const GrowthSite own = growth_site(largest_complete_catchment(read_dem(jacksboro, {}, {}).raster, {}), dials_of(e));
     REQUIRE(site.basin.outline.size() == own.basin.outline.size());
     const double area = std::abs(mesh::polygon_area(own.basin.outline));
     CHECK(std::abs(mesh::polygon_area(site.basin.outline)) == Approx(area).epsilon(1e-9));
     CHECK(site.basin.outlet.x == Approx(own.basin.outlet.x).margin(0.01));
     CHECK(site.basin.source.y == Approx(own.basin.source.y).margin(0.01));
+    REQUIRE(site.basin.bends.size() == own.basin.bends.size());
+    CHECK(site.basin.bends.size() > 3);
+    for (std::size_t i = 0; i < site.basin.bends.size(); ++i) {
+        CHECK(site.basin.bends[i].x == Approx(own.basin.bends[i].x).margin(0.01));
+        CHECK(site.basin.bends[i].y == Approx(own.basin.bends[i].y).margin(0.01));
+    }
     CHECK(site.basin.base_level_m == own.basin.base_level_m);
     CHECK_FALSE(site.crs_wkt.empty());
     const grow::Dials dials = dials_of(e);

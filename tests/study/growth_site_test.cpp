@@ -3,8 +3,10 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 
+#include "study/trunk.hpp"
 #include "support/drawn_catchment.hpp"
 #include "support/temp_folder.hpp"
 #include "thalweg/io/geodesy.hpp"
@@ -40,6 +42,12 @@ Raster valley() {
     return raster;
 }
 
+grow::Dials dials_with(double channel_maintenance_m) {
+    grow::Dials dials;
+    dials.channel_maintenance_m = channel_maintenance_m;
+    return dials;
+}
+
 }  // namespace
 
 TEST_CASE("A basin drawn in the file is taken as it is, a ring that repeats its first corner too") {
@@ -68,16 +76,20 @@ TEST_CASE("An outline and a trunk from GeoJSON files in degrees lie on a plane i
         R"({"type": "Polygon", "coordinates": [[[10, 47], [10.1, 47], [10.1, 47.1], [10, 47.1], [10, 47]]]})");
     e.basin.trunk = folder.text(
         "trunk.geojson", R"({"type": "LineString", "coordinates": [[10.05, 47], [10.07, 47.03], [10.05, 47.08]]})");
+    e.growth.channel_maintenance_m = 900;
     const GrowthSite site = site_of(e);
     const double area = io::geodesic_area({{10, 47}, {10.1, 47}, {10.1, 47.1}, {10, 47.1}});
     CHECK(mesh::polygon_area(site.basin.outline) == Approx(std::abs(area)).epsilon(1e-5));
     CHECK(std::hypot(site.basin.source.x - site.basin.outlet.x, site.basin.source.y - site.basin.outlet.y) ==
           Approx(0.08 * 111177).epsilon(1e-3));
     CHECK_FALSE(site.crs_wkt.empty());
+    CHECK(site.basin.bends.size() == 1);
     // A parallel is no straight line on the plane, so the outlet lay beside the outline.
     REQUIRE(site.warnings.size() == 2);
-    CHECK_THAT(site.warnings[0], Catch::Contains("a trunk is straight, and the bends"));
-    CHECK_THAT(site.warnings[1], Catch::Contains("its outlet lay 1.21 m off the outline"));
+    CHECK_THAT(site.warnings[0], Catch::Contains("its outlet lay 1.21 m off the outline"));
+    CHECK_THAT(site.warnings[1], Catch::Contains("1 of the 1 bends drawn are kept"));
+    e.growth.channel_maintenance_m = 4000;  // the bend lies 1.5 km off the straight line
+    CHECK(site_of(e).basin.bends.empty());
 }
 
 TEST_CASE("A basin across ±180° is as large as one elsewhere, however its longitudes are written") {
@@ -161,7 +173,7 @@ TEST_CASE("An outline that crosses itself is told where, on the map") {
 
 TEST_CASE("A DEM gives its largest basin's outline, and its main stream as trunk") {
     const Raster dem = valley();
-    const GrowthSite site = growth_site(Catchment{dem, 59 * 40 + 20});
+    const GrowthSite site = growth_site(Catchment{dem, 59 * 40 + 20}, dials_with(100));
     CHECK(mesh::polygon_area(site.basin.outline) == Approx(400 * 600));
     CHECK(site.basin.outlet.y == Approx(9000 - 600));
     CHECK(site.basin.outlet.x == Approx(5205));
@@ -171,7 +183,7 @@ TEST_CASE("A DEM gives its largest basin's outline, and its main stream as trunk
     CHECK(site.warnings.empty());
 }
 
-TEST_CASE("A main stream that winds out of sight ends the trunk at its uppermost place in sight, and that is said") {
+TEST_CASE("The trunk follows a main stream that winds out of sight") {
     // The valley bends by a right angle half-way up: data are left out of the inner corner.
     Raster dem = valley();
     for (Index row = 0; row < 60; ++row) {
@@ -182,12 +194,40 @@ TEST_CASE("A main stream that winds out of sight ends the trunk at its uppermost
             if (row <= 25) z = 180 + 2.0 * col + 3 * std::abs(row - 12.0);
         }
     }
-    const GrowthSite site = growth_site(Catchment{dem, 59 * 40 + 8});
-    REQUIRE(site.warnings.size() == 1);
-    CHECK_THAT(site.warnings[0], Catch::Contains("a trunk is straight"));
-    CHECK(site.basin.source.y > 8700);
-    CHECK(site.basin.source.x < 5250);
-    CHECK_NOTHROW(grow::checked_basin(site.basin));
+    const GrowthSite site = growth_site(Catchment{dem, 59 * 40 + 8}, dials_with(60));
+    CHECK(site.warnings.empty());
+    CHECK(site.basin.bends.size() <= 3);
+    REQUIRE(site.basin.bends.size() >= 1);
+    double nearest = 1e9;  // to where the valley turns
+    for (const Point& p : site.basin.bends) nearest = std::min(nearest, std::hypot(p.x - 5085, p.y - 8875));
+    CHECK(nearest < 80);
+    CHECK(site.basin.source.x > 5300);
+    CHECK(grow::grow(site.basin, dials_with(60)).stopped == grow::StopReason::density_reached);
+}
+
+TEST_CASE("A river that bends out of sight is followed, and seen up to its bend only") {
+    // A basin like a horseshoe, and its river in the middle.
+    grow::Basin basin{
+        .outline = {{0, 0}, {1000, 0}, {1000, 4000}, {3000, 4000}, {3000, 0}, {4000, 0}, {4000, 5000}, {0, 5000}},
+        .outlet = {500, 0},
+        .source = {500, 100}};
+    std::vector<Point> river;
+    for (double y = 0; y <= 4500; y += 50) river.push_back({500, y});
+    for (double x = 550; x <= 3500; x += 50) river.push_back({x, 4500});
+    for (double y = 4450; y >= 500; y -= 50) river.push_back({3500, y});
+    grow::Basin followed = basin, seen = basin;
+    CHECK(follow_river(river, smoothed(river, 5), dials_with(400), followed) == 1);
+    CHECK(followed.source == Point{3500, 500});
+    CHECK(followed.bends.size() >= 2);
+    CHECK_NOTHROW(grow::check_trunk(followed, dials_with(400)));
+    const double share = see_river(river, dials_with(400), seen);
+    CHECK(share > 0.39);  // its bend is at 0.39, and one sees a little farther
+    CHECK(share < 0.45);
+    CHECK(seen.bends.empty());
+    // Where no network fits, nothing changes.
+    grow::Basin none_fits = basin;
+    CHECK(follow_river(river, river, dials_with(1e5), none_fits) == 0);
+    CHECK(none_fits.source == basin.source);
 }
 
 TEST_CASE("A basin that says too little, too much or nothing sensible is refused with what to do") {

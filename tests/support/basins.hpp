@@ -86,6 +86,25 @@ inline thalweg::grow::Basin random_basin(thalweg::Random& random) {
     }
 }
 
+/// The same with bends: the trunk goes to and fro about its straight line.
+inline thalweg::grow::Basin random_bent_basin(thalweg::Random& random) {
+    for (;;) {
+        thalweg::grow::Basin basin = random_basin(random);
+        const Point along{basin.source.x - basin.outlet.x, basin.source.y - basin.outlet.y};
+        const auto bends = 1 + random.below(6);
+        const double swing = 0.1 + 0.5 * random.uniform();
+        for (std::uint32_t i = 1; i <= bends; ++i) {
+            const double share = i / (bends + 1.0), aside = swing * (2 * random.uniform() - 1);
+            basin.bends.push_back({basin.outlet.x + share * along.x - aside * along.y,
+                                   basin.outlet.y + share * along.y + aside * along.x});
+        }
+        try {
+            return thalweg::grow::checked_basin(basin);
+        } catch (const thalweg::Error&) {
+        }
+    }
+}
+
 /// Dials over all they can be, for networks of up to a few hundred links.
 inline thalweg::grow::Dials random_dials(thalweg::Random& random, const thalweg::grow::Basin& basin) {
     thalweg::grow::Dials dials;

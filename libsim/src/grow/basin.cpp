@@ -57,35 +57,85 @@ Point outlet_on_outline(const Polygon& outline, const Point& outlet) {
     return nearest;
 }
 
+bool is_well_inside(const Polygon& outline, const Point& p) {
+    return is_inside(outline, p) && norm(nearest_on_outline(outline, p) - p) > on_outline * bounding_diagonal(outline);
+}
+
 void check_source(const Polygon& outline, const Point& source) {
-    const double off_outline = norm(nearest_on_outline(outline, source) - source);
-    if (is_inside(outline, source) && off_outline > on_outline * bounding_diagonal(outline)) return;
+    if (is_well_inside(outline, source)) return;
     throw Error(fmt::format(
         "the trunk's source ({}, {}) is not inside the basin's outline: a trunk runs from its outlet on the "
         "outline up to its source; turn it round if it was drawn downstream",
         source.x, source.y));
 }
 
-/// The source is inside; the outlet may be a corner.
-void check_trunk(const Basin& basin) {
+void check_bends(const Basin& basin) {
+    for (std::size_t i = 0; i < basin.bends.size(); ++i) {
+        const Point& bend = basin.bends[i];
+        if (is_well_inside(basin.outline, bend)) continue;
+        throw TrunkError(TrunkFault::bend, i + 1,
+                         fmt::format("the trunk's bend ({}, {}) is not inside the basin's outline", bend.x, bend.y));
+    }
+}
+
+/// The first piece starts at the outlet, which is on the outline and may be a corner.
+void check_piece(const Basin& basin, std::size_t piece, const Point& from, const Point& to) {
     for (std::size_t i = 0; i < basin.outline.size(); ++i) {
         const Point& a = basin.outline[i];
         const Point& b = basin.outline[(i + 1) % basin.outline.size()];
-        const bool corner_on_trunk = a != basin.outlet && mesh::orientation(basin.outlet, basin.source, a) == 0 &&
-                                     dot(a - basin.outlet, a - basin.source) < 0;
-        const Point foot = nearest_on_segment(a, b, basin.outlet);
-        const bool starts_here = norm(foot - basin.outlet) <= 1e-9 * norm(b - a);
-        const bool crosses = !starts_here && mesh::segments_cross(basin.outlet, basin.source, a, b);
+        const bool corner_on_trunk =
+            a != basin.outlet && mesh::orientation(from, to, a) == 0 && dot(a - from, a - to) < 0;
+        const Point foot = nearest_on_segment(a, b, from);
+        const bool starts_here = from == basin.outlet && norm(foot - from) <= 1e-9 * norm(b - a);
+        const bool crosses = !starts_here && mesh::segments_cross(from, to, a, b);
         if (corner_on_trunk || crosses) {
-            throw Error(
-                fmt::format("the trunk leaves the basin at the side ({}, {})–({}, {}): the straight line from "
-                            "its outlet to its source must lie inside",
-                            a.x, a.y, b.x, b.y));
+            throw TrunkError(TrunkFault::piece_leaves, piece,
+                             fmt::format("the trunk leaves the basin at the side ({}, {})–({}, {}): the lines from its "
+                                         "outlet over its bends to its source must lie inside",
+                                         a.x, a.y, b.x, b.y));
+        }
+    }
+}
+
+void check_bend(const std::vector<Point>& trunk, std::size_t place) {
+    const Point &before = trunk[place - 1], &bend = trunk[place], &after = trunk[place + 1];
+    const Point below = bend - before, above = after - bend;
+    if (dot(below, above) > -0.5 * norm(below) * norm(above)) return;
+    throw TrunkError(
+        TrunkFault::bend, place,
+        fmt::format("the trunk turns back at ({}, {}): it may bend by 120 degrees at most", bend.x, bend.y));
+}
+
+void check_trunk(const Basin& basin) {
+    const std::vector<Point> trunk = trunk_of(basin);
+    const double shortest = on_outline * bounding_diagonal(basin.outline);
+    for (std::size_t i = 0; i + 1 < trunk.size(); ++i) {
+        if (norm(trunk[i + 1] - trunk[i]) <= shortest) {
+            throw TrunkError(
+                TrunkFault::bend, std::max<std::size_t>(i, 1),
+                fmt::format("the trunk has two places at ({}, {}): leave one out", trunk[i].x, trunk[i].y));
+        }
+        check_piece(basin, i, trunk[i], trunk[i + 1]);
+        if (i > 0) check_bend(trunk, i);
+        for (std::size_t j = 0; j + 1 < i; ++j) {
+            const bool touches =
+                norm(nearest_on_segment(trunk[j], trunk[j + 1], trunk[i + 1]) - trunk[i + 1]) < shortest;
+            if (!touches && !mesh::segments_cross(trunk[j], trunk[j + 1], trunk[i], trunk[i + 1])) continue;
+            throw TrunkError(TrunkFault::piece_crosses, i,
+                             fmt::format("the trunk crosses itself between ({}, {}) and ({}, {})", trunk[i].x,
+                                         trunk[i].y, trunk[i + 1].x, trunk[i + 1].y));
         }
     }
 }
 
 }  // namespace
+
+std::vector<Point> trunk_of(const Basin& basin) {
+    std::vector<Point> trunk{basin.outlet};
+    trunk.insert(trunk.end(), basin.bends.begin(), basin.bends.end());
+    trunk.push_back(basin.source);
+    return trunk;
+}
 
 Point nearest_on_outline(const Polygon& outline, const Point& p) {
     Point nearest = outline[0];
@@ -99,9 +149,10 @@ Point nearest_on_outline(const Polygon& outline, const Point& p) {
 Basin checked_basin(const Basin& basin) {
     Basin checked = basin;
     checked.outline = mesh::simple_polygon(basin.outline);
-    for (const Point& end : {basin.outlet, basin.source}) {
-        if (!std::isfinite(end.x) || !std::isfinite(end.y)) {
-            throw Error(fmt::format("the trunk has an end at ({}, {}): both need finite coordinates", end.x, end.y));
+    for (const Point& place : trunk_of(basin)) {
+        if (!std::isfinite(place.x) || !std::isfinite(place.y)) {
+            throw Error(
+                fmt::format("the trunk has a place at ({}, {}): all need finite coordinates", place.x, place.y));
         }
     }
     if (!std::isfinite(basin.base_level_m)) {
@@ -109,6 +160,7 @@ Basin checked_basin(const Basin& basin) {
     }
     checked.outlet = outlet_on_outline(checked.outline, basin.outlet);
     check_source(checked.outline, checked.source);
+    check_bends(checked);
     check_trunk(checked);
     return checked;
 }

@@ -15,6 +15,7 @@
 #include "grow/growing_tree.hpp"
 #include "grow/junction.hpp"
 #include "grow/plane.hpp"
+#include "grow/trunk.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/random.hpp"
 #include "thalweg/mesh/triangulate.hpp"
@@ -33,6 +34,8 @@ constexpr double density_met = 0.01;        // so much length may be missing: un
 
 constexpr Index looked_ahead = 16;     // candidates
 constexpr Index fits_in_cache = 5000;  // links: 300 bytes each
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 constexpr Index draws_per_step = 16;
 constexpr Index tries_per_side = 4;
@@ -60,6 +63,7 @@ void reserve(GrowingTree& tree, double squares) {
 class Grower {
   public:
     Grower(GrowingTree tree, const Dials& dials, double basin_area);
+    void place_bends(std::size_t bends, const Point& origin);
     Growth run(const Point& origin, Stages&);
 
   private:
@@ -106,7 +110,6 @@ Grower::Grower(GrowingTree tree, const Dials& dials, double basin_area)
       candidates_(basin_area) {
     reserve(tree_, basin_area / (c_ * c_));
     tree_.links[0].sidewall_slope = drawn_sidewalls(0);
-    enter(0);
 }
 
 double Grower::uniform(Draw draw, std::uint64_t number) const {
@@ -258,6 +261,35 @@ bool Grower::add_tributary(Index number) {
     return false;
 }
 
+/// The trunk bends at junctions only, as rivers do: each bend gets a tributary on its outer side.
+void Grower::place_bends(std::size_t bends, const Point& origin) {
+    Index upper = 0;
+    auto left = static_cast<double>(bends);
+    for (; !is_straight(tree_, upper); ++step_, --left) {
+        const TributaryDraw draw{
+            .share_of_link = nan,
+            .side = Side::left,
+            .share_of_way = drawn_share(dials_.mean_length, dials_.delta_length, uniform(Draw::length, step_)),
+            .sidewall_slope = drawn_sidewalls(static_cast<Index>(tree_.links.size()) + 1),
+            .divides = drawn_divides(step_ * draws_per_step),
+            .shortest_m = shortest_tributary * shortest_split_at_last * c_,
+            .longest_m = missing_length() / (left + 1)};
+        const auto plan = plan_bend(tree_, dials_, upper, draw);
+        if (!plan) {
+            const Point& bend = tree_.basin.point(tree_.basin.target(tree_.links[upper].edge));
+            throw TrunkError(
+                TrunkFault::bend, tree_.junctions.size() + 1,
+                fmt::format(
+                    "the trunk bends at ({}, {}) where no tributary and divides reach the basin's edge past its "
+                    "other bends: straighten it there",
+                    bend.x + origin.x, bend.y + origin.y));
+        }
+        upper = static_cast<Index>(tree_.links.size());
+        make_junction(tree_, *plan);
+    }
+    for (Index link = 0; link < tree_.links.size(); ++link) enter(link);
+}
+
 void Grower::keep_stage(const Point& origin, Stages& stages) const {
     const std::size_t kept = stages.networks.size();
     if (kept == stages.links.size() || tree_.links.size() < stages.links[kept]) return;
@@ -288,68 +320,12 @@ Growth Grower::run(const Point& origin, Stages& stages) {
     return {finished(tree_, origin), reason, lengthened_, refused_, last_resorts_};
 }
 
-/// The basin in coordinates relative to the outlet, which is a corner of the outline.
-Polygon outline_from_outlet(const Basin& basin) {
-    Polygon outline;
-    bool is_corner = false;
-    for (std::size_t i = 0; i < basin.outline.size(); ++i) {
-        outline.push_back(basin.outline[i] - basin.outlet);
-        is_corner = is_corner || basin.outline[i] == basin.outlet;
-    }
-    if (is_corner) return outline;
-    std::size_t nearest = 0;
-    double least = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-        const Point side = outline[(i + 1) % outline.size()] - outline[i];
-        const double share = std::clamp(-dot(outline[i], side) / dot(side, side), 0.0, 1.0);
-        const double distance = norm(outline[i] + share * side);
-        if (distance < least) {
-            nearest = i;
-            least = distance;
-        }
-    }
-    outline.insert(outline.begin() + static_cast<std::ptrdiff_t>(nearest) + 1, Point{0, 0});
-    return outline;
-}
-
-Index outlet_corner(const Polygon& outline) {
-    return static_cast<Index>(std::find(outline.begin(), outline.end(), Point{0, 0}) - outline.begin());
-}
-
-/// The basin cut in two along the trunk and on to its edge.
-GrowingTree cut_along_trunk(const Basin& basin, double c) {
-    c = std::min(c, norm(basin.source - basin.outlet));  // with `stop = links` it may be far larger than the basin
-    const Polygon outline = outline_from_outlet(basin);
-    const Index outlet = outlet_corner(outline);
-    GrowingTree tree{.basin = Subdivision(outline), .links = {}, .streams = {}, .junctions = {}, .sources = {}};
-    Subdivision& plane = tree.basin;
-    const Point trunk = basin.source - basin.outlet;
-    const Index from = 2 * outlet;  // half-edge 2i starts in corner i
-    const auto corners = static_cast<Index>(outline.size());
-    const std::array skipped{from, 2 * ((outlet + corners - 1) % corners)};
-    const Ray ray{{0, 0}, (1 / norm(trunk)) * trunk};
-    Hit hit;
-    find_hits(plane, from, skipped, {&ray, 1}, 1e-9 * c, {&hit, 1});
-    if (hit.half_edge == none || hit.distance - norm(trunk) < 1e-6 * c) {
-        throw Error(fmt::format("the trunk's source ({}, {}) is on the basin's outline: it must be inside",
-                                basin.source.x, basin.source.y));
-    }
-    const Index to = hit.at_origin ? hit.half_edge : plane.insert_vertex(hit.half_edge, hit.place);
-    const Index edge = plane.connect(from, to, EdgeKind::channel);
-    plane.set_kind(plane.insert_vertex(edge, trunk), EdgeKind::head);
-    GrowingLink link;
-    link.edge = edge;
-    link.length_m = tree.length_m = norm(trunk);
-    link.area_m2 = {plane.area(edge), plane.area(edge ^ 1)};
-    tree.links.push_back(link);
-    tree.streams.push_back({link.length_m, none});
-    return tree;
-}
-
 void check_against_basin(const Dials& dials, const Basin& basin) {
     const double c = dials.channel_maintenance_m;
     const double area = mesh::polygon_area(basin.outline);
-    const double trunk = norm(basin.source - basin.outlet);
+    const std::vector<Point> places = trunk_of(basin);
+    double trunk = 0;
+    for (std::size_t i = 1; i < places.size(); ++i) trunk += norm(places[i] - places[i - 1]);
     if (dials.stop == Stop::density && area / trunk <= c) {
         throw Error(fmt::format(
             "channel_maintenance_m is {}, but the trunk alone leaves {:.6g} m² of basin per metre of channel "
@@ -362,6 +338,16 @@ void check_against_basin(const Dials& dials, const Basin& basin) {
     }
 }
 
+/// With a junction at every bend of the trunk, and nothing else yet.
+Grower started(const Basin& basin, const Dials& dials) {
+    check_against_basin(dials, basin);
+    GrowingTree tree = cut_along_trunk(basin, dials.channel_maintenance_m);
+    const double area = tree.links[0].area();
+    Grower grower(std::move(tree), dials, area);
+    grower.place_bends(basin.bends.size(), basin.outlet);
+    return grower;
+}
+
 }  // namespace
 
 Growth grow(const Basin& given, const Dials& dials) {
@@ -372,10 +358,12 @@ Growth grow(const Basin& given, const Dials& dials) {
 Growth grow(const Basin& given, const Dials& dials, Stages& stages) {
     check_dials(dials);
     const Basin basin = checked_basin(given);
-    check_against_basin(dials, basin);
-    GrowingTree tree = cut_along_trunk(basin, dials.channel_maintenance_m);
-    const double area = tree.links[0].area();
-    return Grower(std::move(tree), dials, area).run(basin.outlet, stages);
+    return started(basin, dials).run(basin.outlet, stages);
+}
+
+void check_trunk(const Basin& given, const Dials& dials) {
+    check_dials(dials);
+    started(checked_basin(given), dials);
 }
 
 }  // namespace thalweg::grow

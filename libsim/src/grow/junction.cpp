@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "grow/plane.hpp"
@@ -16,6 +17,8 @@ constexpr double shortest_link_of_c = 1e-3;
 constexpr double shortest_divide_of_c = 1e-6;  // of C
 constexpr double tolerance_of_c = 1e-9;  // of C: far above rounding in a basin of a million links, far below a link
 constexpr double furthest_turned_link = 0.95;  // of the way to the polygon's edge
+constexpr double furthest_tributary = 0.95;    // the same
+constexpr DivideShares halves{.across = 0.5, .below = 0.5, .above = 0.5};
 
 /// A link at the junction as the divides see it: its direction and what lies on either hand, facing away.
 struct LinkAtJunction {
@@ -51,7 +54,8 @@ void set_directions(const GrowingLink& link, const Flint& flint, const Point& up
     const LinkAtJunction& left = on_left ? tributary : up;
     const auto add_link = [&](bool is_tributary, const LinkAtJunction& at) {
         if (is_tributary) add_ray(plan, upstream, Arm::tributary, at.angle_rad);
-        if (!is_tributary && plan.turn_rad > 0) add_ray(plan, upstream, Arm::upstream_link, at.angle_rad);
+        if (!is_tributary && plan.turn_rad > 0 && plan.bend_of == none)
+            add_ray(plan, upstream, Arm::upstream_link, at.angle_rad);
     };
     const auto& drawn = plan.draw.divides;
     const auto parting = [&](const LinkAtJunction& first, const LinkAtJunction& second, double drawn_share) {
@@ -66,10 +70,11 @@ void set_directions(const GrowingLink& link, const Flint& flint, const Point& up
     add_ray(plan, upstream, Arm::divide, parting(left, down_by_left, 1 - (on_left ? share.below : share.across)));
 }
 
-/// Number of rays that start into the right polygon, if the upstream link keeps its line.
+/// Number of rays that start into the right polygon, if the upstream link stays where it is.
 Index rays_to_the_right(const JunctionPlan& plan) {
+    const double hand = plan.draw.side == Side::left ? 1 : -1;
     Index count = 0;
-    while (count < plan.ray_count && plan.rays[count].angle_rad < 0) ++count;
+    while (count < plan.ray_count && plan.rays[count].angle_rad < -hand * plan.turn_rad) ++count;
     return count;
 }
 
@@ -93,7 +98,7 @@ void meet_polygon(const GrowingTree& tree, Index first, std::span<const Index> s
 
 void meet_polygons(const GrowingTree& tree, double tolerance, JunctionPlan& plan) {
     const Index edge = tree.links[plan.link].edge;
-    if (plan.turn_rad > 0) {  // both polygons become one
+    if (plan.turn_rad > 0 && plan.bend_of == none) {  // both polygons become one
         const Index head = head_of(tree, plan.link);
         const std::array skipped{edge, head};
         meet_polygon(tree, edge ^ 1, skipped, tolerance, 0, plan.ray_count, plan);
@@ -102,10 +107,61 @@ void meet_polygons(const GrowingTree& tree, double tolerance, JunctionPlan& plan
             if (planned.hit.half_edge == (head ^ 1)) planned.hit.half_edge = tree.basin.next(head);
         }
     } else {
-        const std::array skipped{edge};
+        const std::array skipped{edge, plan.bend_of == none ? edge : plan.bend_of};
         const Index right = rays_to_the_right(plan);
         meet_polygon(tree, edge ^ 1, skipped, tolerance, 0, right, plan);
         meet_polygon(tree, edge, skipped, tolerance, right, plan.ray_count, plan);
+    }
+}
+
+/// Whether a ray ends on a channel, or on the way on from a source to the divide.
+bool ends_on_trunk(const Subdivision& basin, const Hit& hit) {
+    const auto is_trunk = [&](Index half_edge) {
+        return basin.kind(half_edge) == EdgeKind::channel || basin.kind(half_edge) == EdgeKind::head;
+    };
+    return hit.half_edge == none || is_trunk(hit.half_edge) ||
+           (hit.at_origin && is_trunk(basin.previous(hit.half_edge)));
+}
+
+/// Directions of what lies on either hand of a ray of a bend.
+std::array<double, 2> between_links(const JunctionPlan& plan, Index ray) {
+    const double hand = plan.draw.side == Side::left ? 1 : -1;
+    const double up = -hand * plan.turn_rad, tributary = hand * plan.angle_rad;
+    const std::array links{-pi, std::min(up, tributary), std::max(up, tributary), pi};
+    Index divides_before = 0;
+    for (Index i = 0; i < ray; ++i) divides_before += plan.rays[i].arm == Arm::divide;
+    return {links[divides_before], links[divides_before + 1]};
+}
+
+/// Turns a divide of a bend that ends on the trunk to the nearest of 64 directions in which it does not.
+bool turn_past_trunk(const GrowingTree& tree, const Point& downstream, double tolerance, Index number,
+                     JunctionPlan& plan) {
+    constexpr int directions = 64;
+    PlannedRay& planned = plan.rays[number];
+    if (!ends_on_trunk(tree.basin, planned.hit)) return true;
+    if (planned.arm != Arm::divide) return false;
+    const auto [from, to] = between_links(plan, number);
+    const double wanted = planned.angle_rad;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = 1; i < directions; ++i) {
+        const double angle = from + (to - from) * i / directions;
+        if (std::abs(angle - wanted) >= least) continue;
+        JunctionPlan turned_plan = plan;
+        turned_plan.rays[number] = {Arm::divide, angle, {plan.place, turned(downstream, angle)}, {}};
+        meet_polygons(tree, tolerance, turned_plan);
+        if (ends_on_trunk(tree.basin, turned_plan.rays[number].hit)) continue;
+        least = std::abs(angle - wanted);
+        planned = turned_plan.rays[number];
+    }
+    return std::isfinite(least);
+}
+
+/// A tributary drawn too short is made as short as may be, if that far it is to the polygon's edge.
+void reach_shortest(JunctionPlan& plan) {
+    for (const PlannedRay& planned : std::span(plan.rays).first(plan.ray_count)) {
+        if (planned.arm != Arm::tributary) continue;
+        const double least = plan.draw.shortest_m / planned.hit.distance;
+        plan.draw.share_of_way = std::min(std::max(plan.draw.share_of_way, least), furthest_tributary);
     }
 }
 
@@ -127,6 +183,7 @@ bool can_be_told_apart(const GrowingTree& tree, const JunctionPlan& plan, double
 
 /// Whether the links are long enough; only then the tributary is cut to what is missing.
 bool set_lengths(const GrowingLink& link, double shortest_link, JunctionPlan& plan) {
+    plan.lower_length_m = plan.draw.share_of_link * link.length_m;
     plan.upstream_length_m = (1 - plan.draw.share_of_link) * link.length_m;
     for (const PlannedRay& planned : std::span(plan.rays).first(plan.ray_count)) {
         if (planned.arm == Arm::tributary) {
@@ -160,8 +217,8 @@ struct NewEdges {
 };
 
 NewEdges cut_polygons(Subdivision& basin, Index edge, const JunctionPlan& plan) {
-    const bool turns = plan.turn_rad > 0;
-    const Index upper_half = basin.insert_vertex(edge, plan.place);
+    const bool is_bend = plan.bend_of != none, turns = plan.turn_rad > 0 && !is_bend;
+    const Index upper_half = is_bend ? plan.bend_of : basin.insert_vertex(edge, plan.place);
     NewEdges made{upper_half, none};
     if (turns) {
         basin.remove(basin.next(upper_half));
@@ -206,6 +263,40 @@ std::optional<JunctionPlan> plan_junction(const GrowingTree& tree, const Dials& 
     return plan;
 }
 
+bool is_straight(const GrowingTree& tree, Index link) {
+    const Index edge = tree.links[link].edge;
+    return !tree.links[link].is_exterior() || tree.basin.kind(tree.basin.next(edge)) != EdgeKind::channel;
+}
+
+std::optional<JunctionPlan> plan_bend(const GrowingTree& tree, const Dials& dials, Index number, TributaryDraw draw) {
+    const GrowingLink& link = tree.links[number];
+    const Subdivision& basin = tree.basin;
+    const double c = dials.channel_maintenance_m;
+    JunctionPlan plan{};
+    plan.link = number;
+    plan.magnitude = tree.magnitude(number);
+    plan.bend_of = basin.next(link.edge);
+    plan.place = basin.point(basin.target(link.edge));
+    const Point below = plan.place - basin.point(basin.origin(link.edge));
+    const Point above = basin.point(basin.target(plan.bend_of)) - plan.place;
+    plan.turn_rad = std::abs(std::atan2(cross(below, above), dot(below, above)));
+    plan.lower_length_m = norm(below);
+    draw.side = cross(below, above) > 0 ? Side::right : Side::left;
+    draw.share_of_link = plan.lower_length_m / link.length_m;
+    draw.divides = halves;
+    plan.draw = draw;
+    plan.angle_rad = junction_angle(gradient(dials.flint, plan.magnitude + 1), gradient(dials.flint, 1));
+    const Point downstream = (1 / plan.lower_length_m) * below;
+    set_directions(link, dials.flint, downstream, plan);
+    meet_polygons(tree, tolerance_of_c * c, plan);
+    for (Index ray = 0; ray < plan.ray_count; ++ray) {
+        if (!turn_past_trunk(tree, downstream, tolerance_of_c * c, ray, plan)) return std::nullopt;
+    }
+    reach_shortest(plan);
+    if (!can_be_told_apart(tree, plan, c) || !set_lengths(link, 0, plan)) return std::nullopt;
+    return plan;
+}
+
 void make_junction(GrowingTree& tree, const JunctionPlan& plan) {
     const auto upper_number = static_cast<Index>(tree.links.size());
     const Index tributary_number = upper_number + 1;
@@ -215,7 +306,7 @@ void make_junction(GrowingTree& tree, const JunctionPlan& plan) {
 
     GrowingLink lower = parent;
     lower.upstream = {upper_number, tributary_number};
-    lower.length_m = plan.draw.share_of_link * parent.length_m;
+    lower.length_m = plan.lower_length_m;
     GrowingLink upper = parent;
     upper.edge = made.upstream;
     upper.downstream = plan.link;

@@ -18,13 +18,13 @@ struct DivideShares {
 
 /// The drawn part of a new tributary.
 struct TributaryDraw {
-    double share_of_link;  ///< from the lower end
-    Side side;
-    double share_of_way;  ///< to the polygon's edge
+    double share_of_link;  ///< from the lower end; a bend is where it is
+    Side side;             ///< a bend's is the outer one
+    double share_of_way;   ///< to the polygon's edge
     std::array<double, 2> sidewall_slope;
     std::optional<DivideShares> divides;  ///< nothing: by the slopes
-    double shortest_m;  ///< no room for less
-    double longest_m;   ///< a longer one is cut
+    double shortest_m;                    ///< no room for less
+    double longest_m;                     ///< a longer one is cut
 };
 
 /// What leaves a junction other than the downstream link.
@@ -47,13 +47,23 @@ struct JunctionPlan {
     double turn_rad;
     std::array<PlannedRay, 5> rays;  ///< counter-clockwise from the downstream link
     Index ray_count = 0;
+    Index bend_of = none;  ///< for a bend of the trunk: half-edge of the next piece
     double tributary_length_m = 0;
+    double lower_length_m = 0;
     double upstream_length_m = 0;
 };
 
 /// A plan, or nothing if the tributary or a turned upstream link would be too short, or the lines too close to tell
 /// apart.
 std::optional<JunctionPlan> plan_junction(const GrowingTree&, const Dials&, Index link, const TributaryDraw&);
+
+/// Whether a link is one straight piece: the trunk is not before each of its bends has a junction.
+bool is_straight(const GrowingTree&, Index link);
+
+/// The same at the first bend of a trunk, whose tributary goes to the outer side. Its divides are not drawn but halve
+/// the angles, so that no draw keeps a trunk from being; those that would run into the trunk itself are turned until
+/// they do not; nothing if none can be, or if the tributary cannot reach the basin's edge.
+std::optional<JunctionPlan> plan_bend(const GrowingTree&, const Dials&, Index link, TributaryDraw);
 
 /// Carries it out: three links where there was one. The lower half keeps the link's number, the upper half and the
 /// tributary get the next two.

@@ -19,6 +19,7 @@ class Subdivision {
     explicit Subdivision(const Polygon& counter_clockwise);
 
     Index next(Index half_edge) const { return sides_[half_edge].next; }
+    Index previous(Index half_edge) const { return sides_[half_edge].previous; }
     Index origin(Index half_edge) const { return sides_[half_edge].origin; }
     Index target(Index half_edge) const { return sides_[half_edge ^ 1].origin; }
     EdgeKind kind(Index half_edge) const { return sides_[half_edge & ~Index{1}].kind; }

@@ -167,7 +167,7 @@ void write_basin(const fs::path& file, const GrowthSite& site) {
     Table outline{.name = "outline", .columns = {}, .kind = GeometryKind::polygon, .geometry = {}};
     outline.polygons.push_back({{.outer = on_the_map(site.basin.outline, site), .holes = {}}});
     Table trunk{.name = "trunk", .columns = {}, .kind = GeometryKind::line, .geometry = {}};
-    trunk.geometry.push_back(on_the_map({site.basin.outlet, site.basin.source}, site));
+    trunk.geometry.push_back(on_the_map(grow::trunk_of(site.basin), site));
     io::write_geopackage(file, {outline, trunk}, site.crs_wkt);
 }
 
@@ -222,10 +222,10 @@ Catchment catchment_of(NamedRaster& dem, MeasureOptions& measure, const GrowthFi
 void check_grown(const DialsFit& fit) {
     const auto links = std::ranges::find(fit.check, "links", &MeasureCheck::name);
     if (links == fit.check.end() || links->grown_mean >= 0.1 * links->measured) return;
-    throw Error(fmt::format(
-        "networks grow in this basin from a straight trunk to {:.0f} links only, where {:.0f} were measured: "
-        "its outlet sees too little of it; choose a basin farther up with --outlet",
-        links->grown_mean, links->measured));
+    throw Error(
+        fmt::format("networks grow in this basin from the trunk to {:.0f} links only, where {:.0f} were measured: "
+                    "its outlet sees too little of it; choose a basin farther up with --outlet",
+                    links->grown_mean, links->measured));
 }
 
 }  // namespace
@@ -251,11 +251,13 @@ GrowthFit fit_growth(const Catchment& catchment, const MeasureOptions& options, 
     if (!measuring.channel_area_m2 && !measuring.heads)
         measuring.channel_area_m2 = catchment_channel_area(catchment.raster);
     const RasterMeasurement m = measure_raster(catchment.raster, measuring);
-    GrowthFit fit{.site = growth_site(catchment),
+    GrowthFit fit{.site = {},
                   .channel_area_m2 = m.statistics.channels.threshold_area_m2,
                   .measures = growth_measures(catchment.raster, m),
                   .dials = {},
                   .notes = {}};
+    std::vector<std::string> told_by_the_fit;
+    fit.site = growth_site(catchment, dials_as_measured(fit.measures, rules, told_by_the_fit));
     fit.notes = fit.site.warnings;
     const std::string begin = measuring.heads ? fmt::format("the {} heads given", measuring.heads->cells.size())
                                               : fmt::format("{:.4g} m2 of drainage area", fit.channel_area_m2);

@@ -267,8 +267,7 @@ std::string grow(const Experiment& e, const std::filesystem::path& folder, const
 std::string grow(const Experiment& e, const Catchment& catchment, const std::filesystem::path& folder,
                  const Messages& messages) {
     check_outputs(e);
-    dials_of(e);
-    return write_all(e, grown_terrain(e, growth_site(catchment), messages), folder, messages);
+    return write_all(e, grown_terrain(e, growth_site(catchment, dials_of(e)), messages), folder, messages);
 }
 
 }  // namespace thalweg::study

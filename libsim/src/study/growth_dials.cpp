@@ -252,16 +252,23 @@ std::string unmet(const DialsFit& fit) {
 
 }  // namespace
 
-DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, std::uint64_t seed,
-                   const GrowthRules& rules) {
-    DialsFit fit;
-    fit.dials.upstream_link = rules.upstream_link;
-    fit.dials.stop = rules.stop;
+grow::Dials dials_as_measured(const channel::GrowthMeasures& m, const GrowthRules& rules,
+                              std::vector<std::string>& notes) {
     if (!(m.channel_maintenance_m.value > 0)) {
         throw Error("the network has no channels to measure: take a smaller channel area");
     }
-    fit.dials.channel_maintenance_m = m.channel_maintenance_m.value;
-    fit.dials.flint = flint_of(m.flint, fit.notes);
+    grow::Dials dials;
+    dials.upstream_link = rules.upstream_link;
+    dials.stop = rules.stop;
+    dials.channel_maintenance_m = m.channel_maintenance_m.value;
+    dials.flint = flint_of(m.flint, notes);
+    return dials;
+}
+
+DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, std::uint64_t seed,
+                   const GrowthRules& rules) {
+    DialsFit fit;
+    fit.dials = dials_as_measured(m, rules, fit.notes);
     const auto links = m.links.exterior.count + m.links.interior.count;
     fit.table = {{"channel_maintenance_m", m.channel_maintenance_m, links, "area over channel length", true},
                  {"flint_p", m.flint.coefficient, links, "slopes of links by magnitude", true},

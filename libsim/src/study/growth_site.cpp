@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "study/map_plane.hpp"
+#include "study/trunk.hpp"
 #include "thalweg/channel/network.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/io/vector_file.hpp"
@@ -17,10 +18,6 @@ namespace thalweg::study {
 namespace {
 
 namespace fs = std::filesystem;
-
-Point between(const Point& a, const Point& b, double share) {
-    return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y)};
-}
 
 double distance(const Point& a, const Point& b) { return std::hypot(b.x - a.x, b.y - a.y); }
 
@@ -82,19 +79,15 @@ std::vector<Point> line_in(const fs::path& file, const std::string& crs_wkt) {
     return shapes.lines.front();
 }
 
-/// Both ends in map coordinates.
+/// From its first place to its last, in map coordinates.
 std::vector<Point> drawn_trunk(const Shape& shape, Drawn& outline) {
     const auto* file = std::get_if<fs::path>(&shape);
     const std::vector<Point> line =
         file != nullptr ? line_in(*file, outline.map_crs_wkt) : std::get<std::vector<Point>>(shape);
-    const bool wrong = file == nullptr ? line.size() != 2 : line.size() < 2;
-    if (wrong) {
+    if (line.size() < 2) {
         throw Error(fmt::format("basin.trunk has {} places: it needs two, the outlet and the source", line.size()));
     }
-    if (line.size() > 2) {
-        outline.warnings.push_back("basin.trunk: a trunk is straight, and the bends of the drawn line are left out");
-    }
-    return {line.front(), line.back()};
+    return line;
 }
 
 constexpr double outlet_may_be_off = 0.01;  // of the outline's extent
@@ -113,6 +106,7 @@ void turn_if_drawn_downstream(grow::Basin& basin, std::vector<std::string>& warn
     const bool only_last_is_on = first > as_good_as_on && last <= as_good_as_on;
     if (!only_last_is_near && !only_last_is_on) return;
     std::swap(basin.outlet, basin.source);
+    std::ranges::reverse(basin.bends);
     warnings.push_back(
         "basin.trunk: its last place is the one on the outline, so it was drawn downstream and is turned round");
 }
@@ -129,17 +123,29 @@ void put_outlet_on_outline(grow::Basin& basin, std::vector<std::string>& warning
     basin.outlet = nearest;
 }
 
+/// A river of a file has more bends than links can follow.
+void straighten_river(const grow::Dials& dials, grow::Basin& basin, std::vector<std::string>& warnings) {
+    const std::vector<Point> river = grow::trunk_of(basin);
+    const double share = follow_river(river, river, dials, basin);
+    if (share == 0) basin.bends.clear();
+    warnings.push_back(fmt::format("basin.trunk: {} of the {} bends drawn are kept{}", basin.bends.size(),
+                                   river.size() - 2, share > 0 && share < 1 ? ", and the upper end is left out" : ""));
+}
+
 GrowthSite drawn_site(const Experiment& e) {
     if (!e.basin.trunk) throw Error("basin.trunk is needed: a line [[x, y], [x, y]] from the outlet to a source");
     Drawn drawn = drawn_outline(*e.basin.outline);
     drawn.outline = mesh::simple_polygon(drawn.outline);  // here, where places are still those of the map
     const std::vector<Point> trunk = drawn.plane.from_map(drawn_trunk(*e.basin.trunk, drawn));
     grow::Basin basin{.outline = drawn.plane.from_map(drawn.outline),
-                      .outlet = trunk[0],
-                      .source = trunk[1],
-                      .base_level_m = e.basin.base_level_m.value_or(0)};
+                      .outlet = trunk.front(),
+                      .source = trunk.back(),
+                      .base_level_m = e.basin.base_level_m.value_or(0),
+                      .bends = {trunk.begin() + 1, trunk.end() - 1}};
     turn_if_drawn_downstream(basin, drawn.warnings);
     put_outlet_on_outline(basin, drawn.warnings);
+    const bool is_river = std::holds_alternative<fs::path>(*e.basin.trunk) && !basin.bends.empty();
+    if (is_river) straighten_river(dials_of(e), basin, drawn.warnings);
     return {.basin = grow::checked_basin(basin),
             .unit_m = drawn.plane.geographic ? 1 : drawn.plane.unit_m,
             .crs_wkt = drawn.plane.crs_wkt,
@@ -168,38 +174,6 @@ std::vector<Index> main_stream(const Catchment& c) {
     return stream;
 }
 
-bool crosses_outline(const Polygon& outline, const Point& from, const Point& to) {
-    for (std::size_t i = 0; i < outline.size(); ++i) {
-        if (mesh::segments_cross(from, to, outline[i], outline[(i + 1) % outline.size()])) return true;
-    }
-    return false;
-}
-
-/// Whether the line from the outlet to the source, widened by 1 % of its length but near the outlet, stays inside.
-bool is_clear(const Polygon& outline, const Point& outlet, const Point& source) {
-    constexpr double clearance = 0.01;
-    const Point aside{-clearance * (source.y - outlet.y), clearance * (source.x - outlet.x)};
-    const Point near = between(outlet, source, 0.1);
-    const Point beyond = between(outlet, source, 1 + clearance);
-    if (crosses_outline(outline, between(outlet, source, 1e-6), beyond)) return false;
-    for (const double side : {-1.0, 1.0}) {
-        const Point from{near.x + side * aside.x, near.y + side * aside.y};
-        const Point to{beyond.x + side * aside.x, beyond.y + side * aside.y};
-        if (crosses_outline(outline, near, from) || crosses_outline(outline, from, to)) return false;
-    }
-    return true;
-}
-
-/// Whether a network can grow from this trunk.
-bool is_trunk(const grow::Basin& basin) {
-    try {
-        grow::checked_basin(basin);
-        return true;
-    } catch (const Error&) {
-        return false;
-    }
-}
-
 /// Throws Error that says how many cells it takes for two across the basin.
 [[noreturn]] void refuse_narrow_basin(const Raster& raster, const GrowthSite& site) {
     const auto [low, high] = evolve::bounding_box(site.basin.outline);
@@ -213,7 +187,7 @@ bool is_trunk(const grow::Basin& basin) {
 
 }  // namespace
 
-GrowthSite growth_site(const Catchment& c) {
+GrowthSite growth_site(const Catchment& c, const grow::Dials& dials) {
     const MapPlane plane = plane_of(c.raster);
     const Grid& grid = c.raster.grid;
     const double cell_m = grid.north_south[(grid.rows - 1) / 2];
@@ -229,22 +203,27 @@ GrowthSite growth_site(const Catchment& c) {
                     .crs_wkt = plane.crs_wkt,
                     .warnings = {}};
     site.basin.outlet = grow::nearest_on_outline(site.basin.outline, line.front());
-    // No more than some hundred places are tried: a stream is seen in stretches, not in single cells.
-    const std::size_t step = std::max<std::size_t>(1, line.size() / 400);
-    for (std::size_t at = line.size() - 1; at > 0; at -= std::min(at, step)) {
-        site.basin.source = line[at];
-        if (!is_clear(site.basin.outline, site.basin.outlet, line[at]) || !is_trunk(site.basin)) continue;
-        site.basin = grow::checked_basin(site.basin);
-        const double share = static_cast<double>(at) / static_cast<double>(line.size() - 1);
-        if (share < 1) {
-            site.warnings.push_back(fmt::format(
-                "basin.dem: a trunk is straight, and from the outlet the lower {:.0f} % of the main stream are seen",
-                100 * share));
+    std::vector<Point> river = line;
+    river.front() = site.basin.outlet;
+    const double half_window = std::min(dials.channel_maintenance_m / 2 / cell_m, 1e6);
+    double followed = follow_river(river, smoothed(river, static_cast<std::size_t>(half_window)), dials, site.basin);
+    if (followed < 1) {
+        grow::Basin straight = site.basin;
+        const double seen = see_river(river, dials, straight);
+        if (seen > followed) site.basin = straight, followed = seen;
+        if (followed == 0) {
+            throw Error(
+                "basin.dem: no trunk from the outlet lies inside the basin; draw basin.outline and basin.trunk");
         }
-        return site;
     }
-    throw Error(
-        "basin.dem: no straight trunk from the outlet lies inside the basin; draw basin.outline and basin.trunk");
+    if (followed < 1) {
+        site.warnings.push_back(
+            fmt::format("basin.dem: the trunk follows the lower {:.0f} % of the main stream; beyond, no trunk lies "
+                        "inside the basin with room for tributaries",
+                        100 * followed));
+    }
+    site.basin = grow::checked_basin(site.basin);
+    return site;
 }
 
 GrowthSite growth_site(const Experiment& e, const Messages& messages) {
@@ -259,7 +238,7 @@ GrowthSite growth_site(const Experiment& e, const Messages& messages) {
         NamedRaster dem = read_dem(*e.basin.dem, {}, messages);
         MeasureOptions options;
         options.channel_area_m2 = e.study.channel_area_m2;
-        site = growth_site(largest_complete_catchment(dem.raster, options));
+        site = growth_site(largest_complete_catchment(dem.raster, options), dials_of(e));
         if (e.basin.base_level_m) site.basin.base_level_m = *e.basin.base_level_m;
     } else {
         site = drawn_site(e);

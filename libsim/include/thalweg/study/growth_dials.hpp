@@ -45,6 +45,10 @@ struct DialsFit {
     double reduced_chi2 = 0;
 };
 
+/// C and Flint's law as measured (what growth does not take is told in `notes`), all other dials by default. Throws
+/// Error for measures without C or Flint's law.
+grow::Dials dials_as_measured(const channel::GrowthMeasures&, const GrowthRules&, std::vector<std::string>& notes);
+
 /// Dials with which networks grow in a basin that measure like the one that was measured. C, Flint's law and
 /// the divides' shares are taken as measured. The others are found by growing (infer::match): the place of a junction
 /// on its stream, the way to the divide, sidewalls and sides are changed by what grows later, so the dial is not what

@@ -23,10 +23,11 @@ struct GrowthSite {
 GrowthSite growth_site(const Experiment&, const Messages&);
 
 /// A catchment's outline without the staircase of its cells, and its main stream as a trunk: the largest drainage area
-/// at every junction is followed upstream from the outlet. A trunk is straight and lies inside, so it ends at the
-/// uppermost place of that stream that is seen from the outlet with a clear distance of 1 % of the trunk's length to
-/// either side.
-GrowthSite growth_site(const Catchment&);
+/// at every junction is followed upstream from the outlet to where channels begin. The trunk keeps the bends that lie
+/// more than C/2 off the line without them, or more if no network with these dials could grow from that. Where none
+/// with bends is possible, it is straight and ends at the uppermost place of that stream that is seen from the outlet
+/// with a clear distance of 1 % of the trunk's length to either side.
+GrowthSite growth_site(const Catchment&, const grow::Dials&);
 
 /// The cell with data of a terrain on this site whose centre is nearest to the outlet. Throws Error if none has data.
 Index outlet_cell(const Raster&, const GrowthSite&);
