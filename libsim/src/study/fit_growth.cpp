@@ -9,6 +9,7 @@
 
 #include "study/report_json.hpp"
 #include "study/results.hpp"
+#include "thalweg/channel/d8_length.hpp"
 #include "thalweg/channel/valleys.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/io/table_file.hpp"
@@ -21,7 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double d8_length_factor = 1.055;  // mean over all directions of D8's way over the straight one
 constexpr double degrees = 180 / std::numbers::pi;
 
 Estimate scaled(const Estimate& e, double factor) {
@@ -76,7 +76,7 @@ Json lengths_json(const channel::LengthStatistics& lengths) {
 Json measures_json(const GrowthFit& fit) {
     const channel::GrowthMeasures& m = fit.measures;
     return {{"channel_area_m2", number(fit.channel_area_m2)},
-            {"d8_length_factor", d8_length_factor},
+            {"d8_length_factor", channel::d8_length_factor},
             {"junction_place", draw_json(m.junction_places)},
             {"headward_reach", draw_json(m.headward_reach)},
             {"valley_side_deg", draw_json(m.sidewall_angle_deg)},
@@ -240,7 +240,7 @@ channel::GrowthMeasures growth_measures(const Raster& raster, const RasterMeasur
          .beyond_source_m = channel::beyond_sources(raster.grid, m.terrain.graph, network, reach_m),
          .valley_sides = channel::valley_sides(raster.grid, m.terrain.graph, m.terrain.elevation_m, network),
          .divides = channel::junction_divides(raster.grid, m.terrain.graph, network, reach_m)});
-    measures.channel_maintenance_m = scaled(measures.channel_maintenance_m, d8_length_factor);
+    measures.channel_maintenance_m = scaled(measures.channel_maintenance_m, channel::d8_length_factor);
     return measures;
 }
 
@@ -263,7 +263,7 @@ GrowthFit fit_growth(const Catchment& catchment, const MeasureOptions& options, 
                                               : fmt::format("{:.4g} m2 of drainage area", fit.channel_area_m2);
     fit.notes.push_back(fmt::format(
         "channel_maintenance_m: channels are taken to begin at {}, and their length is freed of D8's {:.1f} %", begin,
-        100 * (d8_length_factor - 1)));
+        100 * (channel::d8_length_factor - 1)));
     fit.dials = fit_dials(fit.site.basin, fit.measures, seed, rules);
     check_grown(fit.dials);
     return fit;
