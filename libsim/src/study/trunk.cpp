@@ -144,7 +144,8 @@ double follow_river(const std::vector<Point>& river, std::vector<Point> smooth, 
                .places = {},
                .is_no_use = std::vector<std::uint8_t>(river.size(), 0)};
     choose_places(f, dials.channel_maintenance_m / 2);
-    while (f.places.size() > 1) {
+    std::size_t tries_left = 20 + 4 * f.places.size();  // real rivers take up to half their places
+    for (; tries_left > 0 && f.places.size() > 1; --tries_left) {
         const grow::Basin tried = with_trunk(basin, f);
         try {
             grow::check_trunk(tried, dials);
