@@ -73,6 +73,10 @@ TEST_CASE("A fit of growth writes a basin and dials that read back as they were 
     CHECK(dials.divide_above.mean == estimate("divide_above"));
     CHECK(dials.divide_across.delta == estimate("delta_divide_across"));
     CHECK(fit["notes"].size() > 1);
+    const std::string written = text_of(folder / "growth.toml");
+    CHECK(written.find("[growth]") != std::string::npos);
+    CHECK(written.find("[river]") == std::string::npos);  // what grow does not read
+    CHECK(site.warnings.empty());                         // all bends of a fitted trunk are kept
 }
 
 namespace {

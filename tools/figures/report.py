@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """report.html of a study: one file that opens anywhere, without network or scripts."""
 import base64
+import itertools
 import math
 import os
 import re
@@ -34,7 +35,13 @@ def page(folder):
     return (f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8">'
             f'<meta name="viewport" content="width=device-width, initial-scale=1">'
             f'<title>{escape(study.name())}: real and synthetic terrain</title><style>{css}</style></head>\n<body><main>'
-            f'{header(study, links)}{"".join(body)}</main></body></html>\n')
+            f'{header(study, links)}{numbered("".join(body))}</main></body></html>\n')
+
+
+def numbered(body):
+    """Figures are numbered as they come, for not every study has all of them. Figure 1 is always there, and referred to."""
+    numbers = itertools.count(1)
+    return re.sub(r"<b>Figure \d+\.</b>", lambda _: f"<b>Figure {next(numbers)}.</b>", body)
 
 
 def sections_of(study):

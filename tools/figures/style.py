@@ -68,6 +68,7 @@ def figure(height, width=WIDTH):
 def png(drawing, dpi=DPI, palette=False):
     """The figure as PNG. A palette of 256 colours makes a map a third of the bytes, with no difference the eye can find."""
     drawing.set_dpi(dpi)
+    drawing.draw_without_rendering()  # a map's shape is known after one layout, and its labels placed in the next
     drawing.canvas.draw()
     image = Image.fromarray(_pixels(drawing))
     if palette:

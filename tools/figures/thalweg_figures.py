@@ -33,7 +33,9 @@ def figures_of_simulate(folder):
     theory, remark = sides.theory(folder, side)
     yield "slope_area", curves.slope_area(side, theory=theory, remark=remark)
     yield "horton", curves.horton([side])
-    yield "history", curves.history(read_csv(folder, "history.csv"))
+    history = read_csv(folder, "history.csv")
+    if any(len(column) for column in history.values()):
+        yield "history", curves.history(history)
 
 
 def figures_of_grow(folder):

@@ -4,8 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string_view>
 
 #include "study/report_json.hpp"
 #include "study/results.hpp"
@@ -282,7 +284,8 @@ Experiment growth_experiment(const GrowthFit& fit, const fs::path& basin) {
 
 std::string write_growth_fit(const GrowthFit& fit, const std::string& measured_on, const fs::path& folder) {
     write_basin(folder / "basin.gpkg", fit.site);
-    write_text(folder / "growth.toml", to_toml(growth_experiment(fit, "basin.gpkg")));
+    constexpr std::array<std::string_view, 4> read_by_grow{"", "basin", "growth", "output"};
+    write_text(folder / "growth.toml", to_toml(growth_experiment(fit, "basin.gpkg"), read_by_grow));
     io::write_csv(folder / "fit.csv", check_table(fit.dials));
     std::string json = fit_json(fit, measured_on);
     write_text(folder / "fit.json", json);

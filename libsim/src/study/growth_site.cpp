@@ -128,6 +128,7 @@ void straighten_river(const grow::Dials& dials, grow::Basin& basin, std::vector<
     const std::vector<Point> river = grow::trunk_of(basin);
     const double share = follow_river(river, river, dials, basin);
     if (share == 0) basin.bends.clear();
+    if (share == 1 && basin.bends.size() + 2 == river.size()) return;
     warnings.push_back(fmt::format("basin.trunk: {} of the {} bends drawn are kept{}", basin.bends.size(),
                                    river.size() - 2, share > 0 && share < 1 ? ", and the upper end is left out" : ""));
 }

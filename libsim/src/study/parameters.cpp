@@ -484,12 +484,15 @@ Experiment read_experiment(const std::filesystem::path& path, const std::vector<
     }
 }
 
-std::string to_toml(const Experiment& experiment) {
+std::string to_toml(const Experiment& experiment) { return to_toml(experiment, {}); }
+
+std::string to_toml(const Experiment& experiment, std::span<const std::string_view> sections) {
     std::string text;
     std::string section;
     const auto line = [&](const Field& field, const std::string& value) {
         const std::size_t dot = field.key.find('.');
         const std::string own_section(dot == std::string_view::npos ? "" : field.key.substr(0, dot));
+        if (!sections.empty() && std::ranges::find(sections, own_section) == sections.end()) return;
         if (own_section != section) text += fmt::format("\n[{}]\n", own_section);
         section = own_section;
         text += fmt::format("{} = {}", field.key.substr(dot == std::string_view::npos ? 0 : dot + 1), value);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -458,6 +459,9 @@ Experiment read_experiment(const std::filesystem::path&, const std::vector<std::
 
 /// The experiment as TOML with every value and unit, such that reading it again gives the same experiment.
 std::string to_toml(const Experiment&);
+
+/// Only these sections, "" for what stands above them.
+std::string to_toml(const Experiment&, std::span<const std::string_view> sections);
 
 /// One line per parameter, for `--help`.
 std::string experiment_reference();
