@@ -225,6 +225,39 @@ TEST_CASE("A trunk with bends becomes a stream through them all, with a tributar
     CHECK(refused < 100);  // they swing by up to half their length
 }
 
+TEST_CASE("A trunk that goes on into its own outlet is refused, and a huge C refuses no bend") {
+    Basin basin{.outline = {{-1000, 0}, {1000, 0}, {1000, 2000}, {-1000, 2000}},
+                .outlet = {0, 0},
+                .source = {0, 800},
+                .bends = {{500, 500}, {500, 1000}, {0, 1200}}};
+    Dials dials;
+    dials.channel_maintenance_m = 100;
+    CHECK_THROWS_WITH(grow::grow(basin, dials), Catch::Contains("the trunk meets itself"));
+    basin.source = {1e-8, 800};
+    CHECK_THROWS_WITH(grow::grow(basin, dials), Catch::Contains("the trunk meets itself"));
+    basin.source = {-300, 1300};
+    dials.channel_maintenance_m = 1e9;
+    dials.stop = Stop::links;
+    CHECK(grow::grow(basin, dials).network.junctions.size() == 3);
+}
+
+TEST_CASE("No draw of the dials keeps a trunk with bends from being, nor leaves a tributary without length") {
+    Random random(20261129, 2);
+    const Basin basin{.outline = {{-100, 0}, {100, 0}, {100, 2000}, {-100, 2000}},  // hardly wider than its tributaries
+                      .outlet = {0, 0},
+                      .source = {0, 1800},
+                      .bends = {{85, 400}, {-85, 800}, {85, 1200}}};
+    for (int trial = 0; trial < 300; ++trial) {
+        Dials dials = support::random_dials(random, basin);
+        dials.flint.q = -0.6;
+        dials.channel_maintenance_m = 190 * (1 - 0.02 * random.uniform());  // the trunk alone leaves 212 m
+        dials.mean_length = 0.05;
+        dials.delta_length = 0;
+        const Network network = grow::grow(basin, dials).network;
+        for (const double length : network.length_m) CHECK(length > 1e-3 * dials.channel_maintenance_m);
+    }
+}
+
 TEST_CASE("Any place in the basin lies in exactly one polygon") {
     Random random(4, 1);
     for (int trial = 0; trial < 20; ++trial) {

@@ -97,6 +97,9 @@ TEST_CASE("Where a model cannot make such statistics, the errors widen by the ro
     CHECK(apart.parameters[0].value == Approx(1).margin(0.01));
     CHECK(apart.reduced_chi2 == Approx(100).epsilon(0.1));
     CHECK(apart.parameters[0].standard_error == Approx(1 / std::sqrt(3.0)).epsilon(0.05));
+    CHECK(apart.degrees_of_freedom == Approx(2).margin(0.01));
+    // Two degrees of freedom: Student's 4.30.
+    CHECK(apart.parameters[0].interval95[1] == Approx(1 + 4.303 / std::sqrt(3.0)).epsilon(0.05));
 }
 
 TEST_CASE("On average what is left is as large as chance makes it, and never widens what is known") {
@@ -139,6 +142,28 @@ TEST_CASE("The intervals of a bent model cover the truth as often as they say") 
     }
     CHECK(covered > 0.9 * all);
     CHECK(covered < 0.99 * all);
+}
+
+TEST_CASE("Statistics that are always the same, or not finite, tell nothing and harm nothing") {
+    const auto model = [](std::span<const double> p, std::uint64_t seed) {
+        Random random(seed, 16);
+        const double infinite = seed % 7 == 0 ? -std::numeric_limits<double>::infinity() : p[1];
+        return std::vector<double>{p[0] + 0.1 * random.normal(), 0.37, infinite, p[1] + 0.1 * random.normal()};
+    };
+    const double infinity = std::numeric_limits<double>::infinity();
+    const MatchOptions options{.ranges = {{0, 1}, {0, 1}}, .draws = 400, .seed = 3};
+    const Match found = match(model, std::vector<double>{0.4, 0.5, infinity, 0.7}, options);
+    CHECK(found.parameters[0].value == Approx(0.4).margin(0.03));
+    CHECK(found.parameters[1].value == Approx(0.7).margin(0.04));
+    CHECK(found.parameters[0].standard_error == Approx(0.095).epsilon(0.2));
+    CHECK(found.reduced_chi2 < 10);
+    const auto same = [](std::span<const double>, std::uint64_t) { return std::vector<double>{0.1 + 0.2}; };
+    CHECK_FALSE(match(same, std::vector<double>{0.3}, options).has_settled);
+    const auto exact = [](std::span<const double> p, std::uint64_t) { return std::vector<double>{p[0] + p[1] / 2}; };
+    const Match sum = match(exact, std::vector<double>{0.6}, options);
+    CHECK(sum.parameters[0].value + sum.parameters[1].value / 2 == Approx(0.6).margin(1e-4));
+    CHECK(sum.parameters[0].standard_error > 0.05);
+    CHECK_THROWS_AS(match(exact, std::vector<double>{0.6}, {.ranges = {{0, 1}, {1, 1}}}), Error);
 }
 
 TEST_CASE("Estimates stay in their ranges, and statistics that were not measured are left out") {

@@ -363,9 +363,30 @@ TEST_CASE("A difference is judged by those between realisations with other seeds
         const double own = aspect["distance"];
         const auto as_far = std::ranges::count_if(distances, [&](double each) { return each >= own; });
         CHECK(aspect["share_as_far"].get<double>() == Approx(static_cast<double>(as_far) / 3));
-        CHECK(aspect["verdict"] == (as_far == 0 ? "beyond the model's own scatter" : "within the model's own scatter"));
+        CHECK(aspect["verdict"] == "not judged");  // three pairs cannot tell what is rare
     }
     CHECK(with_scale > 5);
+}
+
+TEST_CASE("From twenty realisations on a difference that is rarer than one in twenty is beyond them",
+          "[compare][scale]") {
+    const TempFolder temp;
+    const auto grown = grown_folder(temp, "grown", 1), dem = rough_terrain(temp, "dem.tif", 120, 25);
+    CompareOptions options;
+    options.measure.channel_area_m2 = 1e5;
+    options.realisations = 20;
+    std::filesystem::create_directories(temp / "judged");
+    const Json judged = Json::parse(compare(dem, grown, options, temp / "judged", {}));
+    int beyond = 0, within = 0;
+    for (const Json& aspect : judged["aspects"]) {
+        if (aspect["scale"].is_null()) continue;
+        const bool is_rare = aspect["share_as_far"].get<double>() < 0.05;
+        (is_rare ? beyond : within) += 1;
+        CHECK(aspect["verdict"] == (is_rare ? "beyond the model's own scatter" : "within the model's own scatter"));
+        if (is_rare) CHECK(aspect["distance"].get<double>() > aspect["scale_q95"].get<double>() * (1 - 1e-12));
+    }
+    CHECK(beyond > 0);  // a rough surface is no grown terrain
+    CHECK(beyond + within > 5);
 }
 
 TEST_CASE("One realisation, or none to be had, is refused", "[compare][scale]") {

@@ -49,8 +49,8 @@ TEST_CASE("A fit of growth writes a basin and dials that read back as they were 
     REQUIRE(site.basin.bends.size() == own.basin.bends.size());
     CHECK(site.basin.bends.size() > 3);
     for (std::size_t i = 0; i < site.basin.bends.size(); ++i) {
-        CHECK(site.basin.bends[i].x == Approx(own.basin.bends[i].x).margin(0.01));
-        CHECK(site.basin.bends[i].y == Approx(own.basin.bends[i].y).margin(0.01));
+        CHECK(site.basin.bends[i].x == Approx(own.basin.bends[i].x).margin(1e-6));
+        CHECK(site.basin.bends[i].y == Approx(own.basin.bends[i].y).margin(1e-6));
     }
     CHECK(site.basin.base_level_m == own.basin.base_level_m);
     CHECK_FALSE(site.crs_wkt.empty());

@@ -15,11 +15,6 @@ namespace {
 
 constexpr double on_outline = 1e-6;  // of the basin's size: nearer points are on the outline
 
-Point nearest_on_segment(const Point& a, const Point& b, const Point& p) {
-    const double at = dot(p - a, b - a) / dot(b - a, b - a);
-    return at <= 0 ? a : at >= 1 ? b : a + at * (b - a);
-}
-
 double bounding_diagonal(const Polygon& outline) {
     Point low = outline[0];
     Point high = outline[0];

@@ -265,6 +265,8 @@ bool Grower::add_tributary(Index number) {
 void Grower::place_bends(std::size_t bends, const Point& origin) {
     Index upper = 0;
     auto left = static_cast<double>(bends);
+    // With `stop = links` C may be far larger than the basin.
+    const double shortest = shortest_tributary * shortest_split_at_last * std::min(c_, tree_.length_m);
     for (; !is_straight(tree_, upper); ++step_, --left) {
         const TributaryDraw draw{
             .share_of_link = nan,
@@ -272,8 +274,8 @@ void Grower::place_bends(std::size_t bends, const Point& origin) {
             .share_of_way = drawn_share(dials_.mean_length, dials_.delta_length, uniform(Draw::length, step_)),
             .sidewall_slope = drawn_sidewalls(static_cast<Index>(tree_.links.size()) + 1),
             .divides = drawn_divides(step_ * draws_per_step),
-            .shortest_m = shortest_tributary * shortest_split_at_last * c_,
-            .longest_m = missing_length() / (left + 1)};
+            .shortest_m = shortest,
+            .longest_m = std::max(missing_length() / (left + 1), shortest)};
         const auto plan = plan_bend(tree_, dials_, upper, draw);
         if (!plan) {
             const Point& bend = tree_.basin.point(tree_.basin.target(tree_.links[upper].edge));

@@ -160,7 +160,7 @@ bool turn_past_trunk(const GrowingTree& tree, const Point& downstream, double to
 void reach_shortest(JunctionPlan& plan) {
     for (const PlannedRay& planned : std::span(plan.rays).first(plan.ray_count)) {
         if (planned.arm != Arm::tributary) continue;
-        const double least = plan.draw.shortest_m / planned.hit.distance;
+        const double least = (1 + 1e-9) * plan.draw.shortest_m / planned.hit.distance;  // rounding must not fall below
         plan.draw.share_of_way = std::min(std::max(plan.draw.share_of_way, least), furthest_tributary);
     }
 }
@@ -271,7 +271,7 @@ bool is_straight(const GrowingTree& tree, Index link) {
 std::optional<JunctionPlan> plan_bend(const GrowingTree& tree, const Dials& dials, Index number, TributaryDraw draw) {
     const GrowingLink& link = tree.links[number];
     const Subdivision& basin = tree.basin;
-    const double c = dials.channel_maintenance_m;
+    const double c = std::min(dials.channel_maintenance_m, tree.streams[link.stream].length_m);
     JunctionPlan plan{};
     plan.link = number;
     plan.magnitude = tree.magnitude(number);

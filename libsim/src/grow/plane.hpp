@@ -15,6 +15,11 @@ inline double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y
 inline double cross(const Point& a, const Point& b) { return a.x * b.y - a.y * b.x; }
 inline double norm(const Point& a) { return std::sqrt(dot(a, a)); }
 
+inline Point nearest_on_segment(const Point& a, const Point& b, const Point& p) {
+    const double at = dot(p - a, b - a) / dot(b - a, b - a);
+    return at <= 0 ? a : at >= 1 ? b : a + at * (b - a);
+}
+
 /// The vector turned counter-clockwise.
 inline Point turned(const Point& a, double angle_rad) {
     const double c = std::cos(angle_rad);

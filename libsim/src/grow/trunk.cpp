@@ -65,9 +65,11 @@ void check_end(const Basin& basin, std::span<const Point> trunk, const Hit& hit,
                                 basin.source.x, basin.source.y));
     }
     for (std::size_t i = 0; i + 2 < trunk.size(); ++i) {
-        if (!mesh::segments_cross(trunk.back(), hit.place, trunk[i], trunk[i + 1])) continue;
-        throw Error(fmt::format("straight on from its source ({}, {}) the trunk meets itself: let it end before",
-                                basin.source.x, basin.source.y));
+        const bool touches = norm(nearest_on_segment(trunk[i], trunk[i + 1], hit.place) - hit.place) < shortest;
+        if (!touches && !mesh::segments_cross(trunk.back(), hit.place, trunk[i], trunk[i + 1])) continue;
+        throw TrunkError(TrunkFault::piece_crosses, trunk.size() - 2,
+                         fmt::format("straight on from its source ({}, {}) the trunk meets itself: let it end before",
+                                     basin.source.x, basin.source.y));
     }
 }
 

@@ -13,6 +13,7 @@
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/parallel.hpp"
 #include "thalweg/core/random.hpp"
+#include "thalweg/core/statistics.hpp"
 
 namespace thalweg::infer {
 namespace {
@@ -22,15 +23,18 @@ using Vector = Eigen::VectorXd;
 using Box = std::vector<std::array<double, 2>>;
 
 constexpr std::uint32_t parameter_draws = 0x6d617463;
-constexpr double settled_step = 0.3;  // standard errors
-constexpr Index rounds_at_rest = 2;   // in a row
-constexpr double errors_about = 3;    // half the next box, in standard errors
+constexpr double settled_step = 0.3;    // standard errors
+constexpr Index rounds_at_rest = 2;     // in a row
+constexpr double least_scatter = 1e-6;  // of a statistic, in its standard deviations over the first box
+constexpr double misfit = 2;            // reduced chi2 above which intervals are Student's, for few degrees tell it
+constexpr double errors_about = 3;      // half the next box, in standard errors
 
 /// Mean and covariance of the parameters, taken as normal.
 struct Belief {
     Vector mean;
     Matrix covariance;
     double reduced_chi2 = std::numeric_limits<double>::quiet_NaN();
+    double degrees_of_freedom = 0;
 };
 
 Belief uniform_belief(const Box& box) {
@@ -58,6 +62,9 @@ Outcomes draw_round(const RandomModel& model, const MatchOptions& options, const
             parameters[draw].push_back(box[i][0] + uniform * (box[i][1] - box[i][0]));
         }
         statistics[draw] = model(parameters[draw], options.seed + number);
+        for (double& s : statistics[draw]) {
+            if (!std::isfinite(s)) s = std::numeric_limits<double>::quiet_NaN();
+        }
     };
     parallel_for(
         0, options.draws,
@@ -74,14 +81,28 @@ Outcomes draw_round(const RandomModel& model, const MatchOptions& options, const
     return drawn;
 }
 
-/// The statistics that have a target and that most outcomes have.
+/// Standard deviation of what is known of a statistic; 0 for one that is the same, but for rounding, whatever the draw.
+double spread_of(const Matrix& statistics, Eigen::Index k) {
+    constexpr double rounding = 1e-9;
+    std::vector<double> known;
+    for (const double s : statistics.col(k)) {
+        if (!std::isnan(s)) known.push_back(s);
+    }
+    if (known.size() < 2) return 0;
+    const auto [least, most] = std::ranges::minmax(known);
+    const double spread = standard_deviation(known);
+    return spread > rounding * std::max(std::abs(least), std::abs(most)) ? spread : 0;
+}
+
+/// The statistics that have a target, that most outcomes have and that are not all the same.
 std::vector<Eigen::Index> statistics_in_use(const Outcomes& drawn, std::span<const double> target) {
     constexpr double most = 0.9;
     std::vector<Eigen::Index> used;
     for (Eigen::Index k = 0; k < drawn.statistics.cols(); ++k) {
         const auto known = (drawn.statistics.col(k).array() == drawn.statistics.col(k).array()).count();
         const bool is_usual = static_cast<double>(known) >= most * static_cast<double>(drawn.statistics.rows());
-        if (is_usual && !std::isnan(target[static_cast<std::size_t>(k)])) used.push_back(k);
+        const bool has_target = std::isfinite(target[static_cast<std::size_t>(k)]);
+        if (is_usual && has_target && spread_of(drawn.statistics, k) > 0) used.push_back(k);
     }
     return used;
 }
@@ -116,13 +137,15 @@ Outcomes within(const Box& box, const Outcomes& all) {
 /// Expected statistics near the middle of a box: a constant, slopes and products of the parameters.
 class Response {
   public:
-    explicit Response(const Outcomes& outcomes) : middle_(outcomes.parameters.colwise().mean()) {
+    /// `least_variance`: of statistics that a regression explains but for rounding.
+    Response(const Outcomes& outcomes, const Vector& least_variance) : middle_(outcomes.parameters.colwise().mean()) {
         const auto rows = outcomes.parameters.rows();
         Matrix design(rows, terms());
         for (Eigen::Index row = 0; row < rows; ++row) design.row(row) = terms_at(outcomes.parameters.row(row));
         coefficients_ = design.colPivHouseholderQr().solve(outcomes.statistics);
         const Matrix residuals = outcomes.statistics - design * coefficients_;
         scatter_ = residuals.transpose() * residuals / static_cast<double>(rows - terms());
+        scatter_ += least_variance.asDiagonal();
         terms_covariance_ = (design.transpose() * design).completeOrthogonalDecomposition().pseudoInverse();
     }
 
@@ -268,7 +291,8 @@ Belief believed(Vector at, const Belief& before, const Response& response, const
     for (int turn = 0; turn < most_turns; ++turn) {
         after.covariance = (information / excess + inverse_before).inverse();
         const double taken_up = (information * after.covariance).trace() / excess;
-        after.reduced_chi2 = chi2 / (static_cast<double>(whitening.rows()) - taken_up);
+        after.degrees_of_freedom = static_cast<double>(whitening.rows()) - taken_up;
+        after.reduced_chi2 = chi2 / after.degrees_of_freedom;
         const double next = std::max(1.0, after.reduced_chi2);
         if (std::abs(next - excess) < 1e-6 * excess) break;
         excess = next;
@@ -302,12 +326,13 @@ Box box_about(const Belief& belief, const Box& ranges) {
 
 Match result_of(const Belief& after, const Belief& before, const Box& ranges) {
     Match match{.parameters = {}, .identified = {}};
+    const double width = after.reduced_chi2 > misfit ? student_t95(std::max(2.0, after.degrees_of_freedom)) : 1.96;
     for (std::size_t i = 0; i < ranges.size(); ++i) {
         const auto& [low, high] = ranges[i];
         const auto at = static_cast<Eigen::Index>(i);
         const double value = std::clamp(after.mean[at], low, high), error = error_of(after, at);
         match.parameters.push_back(
-            {value, error, {std::max(low, value - 1.96 * error), std::min(high, value + 1.96 * error)}});
+            {value, error, {std::max(low, value - width * error), std::min(high, value + width * error)}});
         match.identified.push_back(error <= error_of(before, at) / 2);
     }
     return match;
@@ -316,12 +341,15 @@ Match result_of(const Belief& after, const Belief& before, const Box& ranges) {
 }  // namespace
 
 Match match(const RandomModel& model, std::span<const double> target, const MatchOptions& options) {
+    for (const auto& [low, high] : options.ranges) {
+        if (!(low < high)) throw Error(fmt::format("a parameter cannot be looked for between {} and {}", low, high));
+    }
     const Belief before = uniform_belief(options.ranges);
     Belief belief = before;
     Box box = options.ranges;
     std::vector<Eigen::Index> used;
     Outcomes all;
-    Vector measured;
+    Vector measured, least_variance;
     Index rounds = 0, at_rest = 0;
     double last_step = std::numeric_limits<double>::infinity();
     while (rounds < options.most_rounds && at_rest < rounds_at_rest) {
@@ -329,12 +357,17 @@ Match match(const RandomModel& model, std::span<const double> target, const Matc
         if (rounds == 0) {
             used = statistics_in_use(drawn, target);
             if (used.empty()) break;
+            least_variance.resize(static_cast<Eigen::Index>(used.size()));
+            for (Eigen::Index i = 0; i < least_variance.size(); ++i) {
+                least_variance[i] =
+                    std::pow(least_scatter * spread_of(drawn.statistics, used[static_cast<std::size_t>(i)]), 2);
+            }
             measured = Eigen::Map<const Vector>(target.data(), static_cast<Eigen::Index>(target.size()))(used);
         }
         add_whole(drawn, used, all);
         const Outcomes near = within(box, all);
         check_enough(near, options.draws);
-        const Response response(near);
+        const Response response(near, least_variance);
         const Vector mean_before = belief.mean;
         belief = believed(nearest(before, response, measured, box, belief.mean), before, response, measured);
         last_step = largest_step(mean_before, belief);
@@ -348,6 +381,7 @@ Match match(const RandomModel& model, std::span<const double> target, const Matc
     result.last_step = last_step;
     result.has_settled = at_rest == rounds_at_rest;
     result.reduced_chi2 = belief.reduced_chi2;
+    result.degrees_of_freedom = belief.degrees_of_freedom;
     return result;
 }
 

@@ -121,10 +121,17 @@ void check_ascii_grid(GDALDataset& dataset, const std::string& name) {
     if (!is_ascii_grid(dataset)) return;
     const auto cols = static_cast<std::uint64_t>(dataset.GetRasterXSize());
     const std::uint64_t cells = cols * static_cast<std::uint64_t>(dataset.GetRasterYSize());
+    const bool is_of_whole_numbers = GDALDataTypeIsInteger(dataset.GetRasterBand(1)->GetRasterDataType()) != 0;
     Words words(dataset.GetDescription());
     std::string_view word;
     std::uint64_t count = 0;
     for (bool more = skip_header(words, word); more; more = words.next(word)) {
+        if (is_of_whole_numbers && is_not_finite(word)) {
+            throw Error(fmt::format(
+                "'{}' in row {} and column {} of {} would be taken for 0, for its numbers are whole: put the "
+                "header's NODATA_value there",
+                word.substr(0, 40), count / cols + 1, count % cols + 1, name));
+        }
         if (!is_number(word)) {
             throw Error(
                 fmt::format("'{}' in row {} and column {} of {} is no number: put a height there, or the "

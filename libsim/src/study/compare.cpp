@@ -445,8 +445,10 @@ Spread spread_of(const Model& model, const CompareOptions& options, double thres
 }
 
 /// Judges one aspect by the distances between realisations: were the sides two of them, theirs would be one of these.
-void judge(Json& aspect, const std::vector<double>& distances) {
+/// With fewer than 20 of them a rare distance cannot be told from chance, and none is judged.
+void judge(Json& aspect, const std::vector<double>& distances, Index realisations) {
     constexpr double rare = 0.05;
+    constexpr Index enough = 20;
     if (!aspect.at("distance").is_number() || distances.empty()) return;
     const double distance = aspect.at("distance").get<double>();
     const auto as_far = std::ranges::count_if(distances, [&](double each) { return each >= distance; });
@@ -454,17 +456,18 @@ void judge(Json& aspect, const std::vector<double>& distances) {
     aspect["scale"] = quantile(distances, 0.5);
     aspect["scale_q95"] = quantile(distances, 1 - rare);
     aspect["share_as_far"] = share;
+    if (realisations < enough) return;
     aspect["verdict"] = share < rare ? "beyond the model's own scatter" : "within the model's own scatter";
 }
 
-void judge_all(Json& aspects, const std::vector<Spread>& spreads) {
+void judge_all(Json& aspects, const std::vector<Spread>& spreads, Index realisations) {
     for (std::size_t k = 0; k < aspects.size(); ++k) {
         std::vector<double> widest;
         for (const Spread& spread : spreads) {
             if (spread.empty() || spread[k].empty()) continue;
             if (widest.empty() || quantile(spread[k], 0.5) > quantile(widest, 0.5)) widest = spread[k];
         }
-        judge(aspects[k], widest);
+        judge(aspects[k], widest, realisations);
     }
 }
 
@@ -548,7 +551,7 @@ std::string compare(const fs::path& a_path, const fs::path& b_path, const Compar
                 spreads.push_back(spread_of(model, options, threshold, folder, messages));
             }
         }
-        judge_all(aspects, spreads);
+        judge_all(aspects, spreads, options.realisations);
         std::vector<std::string> notes = unlike_rulers(a, b, options);
         for (const std::string& note : notes) messages.warning(note);
         notes.push_back(note_of_scale(models, options.realisations));

@@ -128,6 +128,7 @@ std::string fit_json(const GrowthFit& fit, const std::string& measured_on) {
     Json json{{"method", "growth"}, {"measured_on", measured_on}};
     add_unknown(json, notes);
     json["reduced_chi2"] = number(fit.dials.reduced_chi2);
+    json["degrees_of_freedom"] = number(fit.dials.degrees_of_freedom);
     json["iterations"] = fit.dials.rounds;
     json["converged"] = fit.dials.converged;
     json["message"] = fmt::format(
@@ -223,7 +224,8 @@ Catchment catchment_of(NamedRaster& dem, MeasureOptions& measure, const GrowthFi
 /// A trunk that sees hardly anything of a winding basin leaves growth no room.
 void check_grown(const DialsFit& fit) {
     const auto links = std::ranges::find(fit.check, "links", &MeasureCheck::name);
-    if (links == fit.check.end() || links->grown_mean >= 0.1 * links->measured) return;
+    const double least = links->measured < 3 ? 1 : std::max(2.0, 0.1 * links->measured);  // 1: the bare trunk
+    if (links == fit.check.end() || links->grown_mean >= least) return;
     throw Error(
         fmt::format("networks grow in this basin from the trunk to {:.0f} links only, where {:.0f} were measured: "
                     "its outlet sees too little of it; choose a basin farther up with --outlet",
@@ -275,7 +277,7 @@ Experiment growth_experiment(const GrowthFit& fit, const fs::path& basin) {
     Experiment e;
     e.seed = fit.dials.dials.seed;
     e.basin.outline = basin;
-    e.basin.trunk = basin;
+    e.basin.trunk = on_the_map(grow::trunk_of(fit.site.basin), fit.site);  // a drawn river would be simplified again
     e.basin.base_level_m = fit.site.basin.base_level_m;
     e.growth.dials = fit.dials.dials;
     e.growth.channel_maintenance_m = fit.dials.dials.channel_maintenance_m;

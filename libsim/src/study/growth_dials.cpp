@@ -285,6 +285,7 @@ DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, s
     fit.last_step = found.last_step;
     fit.converged = found.has_settled;
     fit.reduced_chi2 = found.reduced_chi2;
+    fit.degrees_of_freedom = found.degrees_of_freedom;
     take_matched(found, matched, fit);
     fit.table.insert(fit.table.end(), divides.begin(), divides.end());
     fit.dials.seed = seed;

@@ -29,8 +29,9 @@ struct Match {
     Index outcomes = 0;                    ///< with all statistics, of all rounds
     Index rounds = 0;
     double last_step = 0;  ///< by how many of its standard errors the last round moved the parameter that it moved most
-    bool has_settled = false;  ///< the last two rounds moved no parameter by more than 0.3 of its standard errors
-    double reduced_chi2 = 0;   ///< χ²/ν at the estimate: far above 1 where the model cannot make such statistics
+    bool has_settled = false;       ///< the last two rounds moved no parameter by more than 0.3 of its standard errors
+    double degrees_of_freedom = 0;  ///< ν
+    double reduced_chi2 = 0;  ///< χ²/ν at the estimate: far above 1 where the model cannot make such statistics
 };
 
 /// The parameters of a random model, given the statistics of one outcome: what is measured need not be what was put in,
@@ -48,9 +49,13 @@ struct Match {
 /// (Gaussian indirect inference; Gouriéroux, Monfort & Renault 1993; Wood 2010). The errors include the chance in
 /// the one outcome that was measured.
 ///
-/// Statistics whose target is NaN, or that a tenth of the first round's outcomes lack, are left out; so are outcomes
-/// that lack one of the others. Same bytes for any number of threads. Throws Error where a box holds fewer outcomes
-/// with all of them than one and a half times the regression's terms, (P + 1)(P + 2)/2 for P parameters.
+/// Intervals are 1.96 errors wide, and Student's for ν (2 at least) where χ²/ν exceeds 2: so few degrees hardly tell
+/// how far off the model is.
+///
+/// Statistics whose target is not finite, that a tenth of the first round's outcomes lack, or that are the same in all
+/// of them are left out; so are outcomes that lack one of the others. Same bytes for any number of threads. Throws
+/// Error for a range without width, and where a box holds fewer outcomes with all of them than one and a half times the
+/// regression's terms, (P + 1)(P + 2)/2 for P parameters.
 Match match(const RandomModel&, std::span<const double> target, const MatchOptions&);
 
 }  // namespace thalweg::infer

@@ -43,6 +43,7 @@ struct DialsFit {
     double last_step = 0;
     bool converged = false;
     double reduced_chi2 = 0;
+    double degrees_of_freedom = 0;
 };
 
 /// C and Flint's law as measured (what growth does not take is told in `notes`), all other dials by default. Throws
