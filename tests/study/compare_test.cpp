@@ -10,6 +10,7 @@
 
 #include "support/temp_folder.hpp"
 #include "support/terrains.hpp"
+#include "thalweg/core/statistics.hpp"
 #include "thalweg/study/grow.hpp"
 
 using namespace thalweg;
@@ -363,6 +364,9 @@ TEST_CASE("A difference is judged by those between realisations with other seeds
         const double own = aspect["distance"];
         const auto as_far = std::ranges::count_if(distances, [&](double each) { return each >= own; });
         CHECK(aspect["share_as_far"].get<double>() == Approx(static_cast<double>(as_far) / 3));
+        const double values[] = {pairs[0]["aspects"][k]["a"], pairs[0]["aspects"][k]["b"], pairs[1]["aspects"][k]["b"]};
+        CHECK(aspect["model_mean"].get<double>() == Approx((values[0] + values[1] + values[2]) / 3).epsilon(1e-12));
+        CHECK(aspect["model_sd"].get<double>() == Approx(standard_deviation(values)).epsilon(1e-9));
         CHECK(aspect["verdict"] == "not judged");  // three pairs cannot tell what is rare
     }
     CHECK(with_scale > 5);

@@ -262,10 +262,10 @@ double area_between(const Curve& a, const Curve& b) {
 }
 
 Json aspect(const char* name, const char* quantity, double a, double b, double distance, const char* definition) {
-    return {{"name", name},           {"quantity", quantity},         {"a", number(a)},
-            {"b", number(b)},         {"distance", number(distance)}, {"distance_definition", definition},
-            {"scale", nullptr},       {"scale_q95", nullptr},         {"share_as_far", nullptr},
-            {"verdict", "not judged"}};
+    return {{"name", name},          {"quantity", quantity},         {"a", number(a)},
+            {"b", number(b)},        {"distance", number(distance)}, {"distance_definition", definition},
+            {"scale", nullptr},      {"scale_q95", nullptr},         {"share_as_far", nullptr},
+            {"model_mean", nullptr}, {"model_sd", nullptr},          {"verdict", "not judged"}};
 }
 
 Json slope_area_aspect(const Json& a, const Json& b) {
@@ -421,8 +421,16 @@ Side measured_realisation(const Model& model, Index number, const MeasureOptions
     return side;
 }
 
-/// Distances between any two realisations of a model, by aspect; those that are not known are left out.
-using Spread = std::vector<std::vector<double>>;
+/// What the realisations of a model measure in one aspect, and the distances between any two of them; what is not known
+/// is left out.
+struct AspectSpread {
+    std::vector<double> values, distances;
+};
+using Spread = std::vector<AspectSpread>;
+
+void add_known(const Json& value, std::vector<double>& values) {
+    if (value.is_number()) values.push_back(value.get<double>());
+}
 
 Spread spread_of(const Model& model, const CompareOptions& options, double threshold_m2, const fs::path& folder,
                  const Messages& messages) {
@@ -432,12 +440,12 @@ Spread spread_of(const Model& model, const CompareOptions& options, double thres
         messages.progress(
             fmt::format("'{}' with other seeds: {} of {}", model.folder.filename().string(), i, options.realisations));
         made.push_back(measured_realisation(model, i, options.measure, threshold_m2, folder / ".realisation"));
-        for (std::size_t j = 0; j + 1 < made.size(); ++j) {
+        for (std::size_t j = 0; j < made.size(); ++j) {
             const Json aspects = all_aspects(made[j], made.back());
             spread.resize(aspects.size());
             for (std::size_t k = 0; k < aspects.size(); ++k) {
-                const Json& distance = aspects[k].at("distance");
-                if (distance.is_number()) spread[k].push_back(distance.get<double>());
+                if (j + 1 < made.size()) add_known(aspects[k].at("distance"), spread[k].distances);
+                if (j + 1 == made.size()) add_known(aspects[k].at("b"), spread[k].values);
             }
         }
     }
@@ -446,9 +454,10 @@ Spread spread_of(const Model& model, const CompareOptions& options, double thres
 
 /// Judges one aspect by the distances between realisations: were the sides two of them, theirs would be one of these.
 /// With fewer than 20 of them a rare distance cannot be told from chance, and none is judged.
-void judge(Json& aspect, const std::vector<double>& distances, Index realisations) {
+void judge(Json& aspect, const AspectSpread& model, Index realisations) {
     constexpr double rare = 0.05;
     constexpr Index enough = 20;
+    const std::vector<double>& distances = model.distances;
     if (!aspect.at("distance").is_number() || distances.empty()) return;
     const double distance = aspect.at("distance").get<double>();
     const auto as_far = std::ranges::count_if(distances, [&](double each) { return each >= distance; });
@@ -456,16 +465,20 @@ void judge(Json& aspect, const std::vector<double>& distances, Index realisation
     aspect["scale"] = quantile(distances, 0.5);
     aspect["scale_q95"] = quantile(distances, 1 - rare);
     aspect["share_as_far"] = share;
+    aspect["model_mean"] = number(mean(model.values));
+    aspect["model_sd"] = number(standard_deviation(model.values));
     if (realisations < enough) return;
     aspect["verdict"] = share < rare ? "beyond the model's own scatter" : "within the model's own scatter";
 }
 
 void judge_all(Json& aspects, const std::vector<Spread>& spreads, Index realisations) {
     for (std::size_t k = 0; k < aspects.size(); ++k) {
-        std::vector<double> widest;
+        AspectSpread widest;
         for (const Spread& spread : spreads) {
-            if (spread.empty() || spread[k].empty()) continue;
-            if (widest.empty() || quantile(spread[k], 0.5) > quantile(widest, 0.5)) widest = spread[k];
+            if (spread.empty() || spread[k].distances.empty()) continue;
+            const bool is_wider =
+                widest.distances.empty() || quantile(spread[k].distances, 0.5) > quantile(widest.distances, 0.5);
+            if (is_wider) widest = spread[k];
         }
         judge(aspects[k], widest, realisations);
     }

@@ -241,10 +241,12 @@ void describe_growth(AnyExperiment& e, Visit& visit) {
     visit(Field{"basin.outline", "",
                 "outline of the basin: corners [[x, y], …] or a vector file with one polygon; grow needs it or a DEM"},
           e.basin.outline);
-    visit(Field{"basin.trunk", "",
-                "main stream: a straight line [[x, y], [x, y]] from the outlet on the outline to a source inside, or a "
-                "vector file with one line (its ends count); in the outline's coordinates"},
-          e.basin.trunk);
+    visit(
+        Field{
+            "basin.trunk", "",
+            "main stream: [[x, y], ...] from the outlet on the outline over its bends to a source inside, or a vector "
+            "file with one line (bends of less than C/2 are left out); in the outline's coordinates"},
+        e.basin.trunk);
     visit(Field{"basin.base_level_m", "m", "height of the outlet; default 0, with a DEM its own"},
           e.basin.base_level_m);
     visit(Field{"basin.dem", "", "DEM whose largest complete basin and main stream are taken, instead of an outline"},
