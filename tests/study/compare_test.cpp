@@ -2,6 +2,8 @@
 // Comparisons of curves drawn by hand, whose distances were computed on paper.
 #include "thalweg/study/compare.hpp"
 
+#include <fmt/format.h>
+
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -391,6 +393,24 @@ TEST_CASE("From twenty realisations on a difference that is rarer than one in tw
     }
     CHECK(beyond > 0);  // a rough surface is no grown terrain
     CHECK(beyond + within > 5);
+}
+
+TEST_CASE("A common threshold of a few cells is warned of", "[compare]") {
+    const TempFolder temp;
+    const auto a = rough_terrain(temp, "a.tif", 60, 30), b = rough_terrain(temp, "b.tif", 60, 30);
+    const auto warned = [&](double area_m2) {
+        std::vector<std::string> warnings;
+        CompareOptions options;
+        options.measure.channel_area_m2 = area_m2;
+        const auto folder = temp / fmt::format("with_{}", area_m2);
+        std::filesystem::create_directories(folder);
+        Messages messages;
+        messages.warning = [&](const std::string& w) { warnings.push_back(w); };
+        compare(a, b, options, folder, messages);
+        return std::ranges::any_of(warnings, [](const std::string& w) { return w.starts_with("channels begin at"); });
+    };
+    CHECK(warned(5 * 900));
+    CHECK_FALSE(warned(20 * 900));
 }
 
 TEST_CASE("One realisation, or none to be had, is refused", "[compare][scale]") {

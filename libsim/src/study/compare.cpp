@@ -187,6 +187,18 @@ std::vector<std::string> unlike_rulers(const Side& a, const Side& b, const Compa
     return unlike;
 }
 
+/// Where channels begin at a few cells, hillslopes count as rivers on both sides: a note, or nothing.
+std::string note_of_few_cells(const Side& a, const Side& b, double threshold_m2) {
+    constexpr double enough = 10;
+    const double larger_m = std::fmax(cell_size(a), cell_size(b));
+    const double cells = threshold_m2 / (larger_m * larger_m);
+    if (!(cells < enough)) return "";
+    return fmt::format(
+        "channels begin at {:.4g} m2, where {:.2g} cells of {:.4g} m come together, so that hillslopes count "
+        "as rivers: give a larger --channel-area-m2",
+        threshold_m2, std::max(cells, 1.0), larger_m);
+}
+
 /// On cells of which size both sides came and were measured.
 Json cells_json(const Side& a, const Side& b, const CompareOptions& options) {
     const char* resampled = a.brought_from_m ? "a" : b.brought_from_m ? "b" : "neither";
@@ -566,6 +578,8 @@ std::string compare(const fs::path& a_path, const fs::path& b_path, const Compar
         }
         judge_all(aspects, spreads, options.realisations);
         std::vector<std::string> notes = unlike_rulers(a, b, options);
+        const std::string few_cells = note_of_few_cells(a, b, threshold);
+        if (!few_cells.empty()) notes.push_back(few_cells);
         for (const std::string& note : notes) messages.warning(note);
         notes.push_back(note_of_scale(models, options.realisations));
         const auto of_sides = notes_of(a, b, aspects);
