@@ -23,7 +23,7 @@
 namespace thalweg::grow {
 namespace {
 
-// Shares of C (SCIENCE, after Kelley et al. 1988).
+// Shares of C, ours where Kelley et al. (1988) are silent.
 constexpr double shortest_split_link = 0.2;  // halved, when nothing else can grow, down to the second value
 constexpr double shortest_split_at_last = 0.02;
 constexpr double room_beyond_source = 0.5;

@@ -42,7 +42,7 @@ struct SegmentOptions {
     double smallest_area_m2 = 0;      ///< where channels begin
 };
 
-/// Slopes over segments of fixed drop along carved profiles, cut where a tributary makes the area jump (SCIENCE: steps
+/// Slopes over segments of fixed drop along carved profiles, cut where a tributary makes the area jump (steps
 /// of the DEM's vertical quantum make single-cell slopes useless). Each river is walked up from its mouth along the
 /// donor of largest area; a node stands for the step to its receiver. `used`: 1 where a node may enter (empty: all).
 ///
