@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
@@ -200,6 +201,34 @@ TEST_CASE("The fit of a study is that of its basin with the study's exponent, up
     CHECK(*simulated.river.k == Approx(in_study["k"].get<double>()).epsilon(1e-12));
     CHECK(*simulated.river.m == Approx(in_study["m"].get<double>()).epsilon(1e-12));
     CHECK(simulated.uplift.rate_m_per_yr == uplift);
+}
+
+TEST_CASE("A theta that no river has is told with what may have made it") {
+    const TempFolder temp;
+    const auto notes_at = [&](double theta) {
+        const auto folder = temp / fmt::format("theta_{}", theta);
+        std::filesystem::create_directories(folder);
+        std::ofstream csv(folder / "slope_area.csv");
+        csv << "area_m2,slope,slope_se,count\n";
+        for (int i = 0; i < 20; ++i) {
+            const double area = 1e3 * std::pow(10, 0.1 * i), slope = std::pow(area, -theta);
+            csv << fmt::format("{},{},{},9\n", area, slope * (1 + 0.01 * (i % 3 - 1)), 0.01 * slope);
+        }
+        csv.close();
+        std::ofstream(folder / "summary.json") << R"({"dem": {}, "channels": {}, "input": {}})";
+        std::vector<std::string> warnings;
+        Messages messages;
+        messages.warning = [&](const std::string& w) { warnings.push_back(w); };
+        std::filesystem::create_directories(folder / "fit");
+        const Json json = Json::parse(fit(folder, {}, folder / "fit", messages).json);
+        const auto is_odd = [](const std::string& s) { return s.starts_with("theta is "); };
+        const auto notes = json["notes"].get<std::vector<std::string>>();
+        CHECK(std::ranges::any_of(notes, is_odd) == std::ranges::any_of(warnings, is_odd));
+        return std::ranges::any_of(notes, is_odd);
+    };
+    CHECK(notes_at(0.1));
+    CHECK(notes_at(1.2));
+    CHECK_FALSE(notes_at(0.45));
 }
 
 TEST_CASE("A fit says which ground it is of and what to compare, of a DEM and of the folder of one alike") {

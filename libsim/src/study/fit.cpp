@@ -210,12 +210,29 @@ std::string fit_line(const infer::SlopeAreaFit& f, const Target& target) {
         f.m.value, f.k_at_reference_area.value, area, f.k->value, f.k_unit);
 }
 
+/// Where all that the interval holds is no river's: a note, or nothing. Of rivers the quartiles of theta are 0.225 and
+/// 0.575 (Gailleton et al. 2021).
+std::string note_of_odd_theta(const infer::SlopeAreaFit& f) {
+    constexpr double least = 0.2, most = 0.8;
+    const auto& [low, high] = f.theta.interval95;
+    if (!(high < least || low > most)) return "";
+    return fmt::format(
+        "theta is {:.3g} (95 %: {:.3g} to {:.3g}), and of rivers mostly 0.2 to 0.6: where channels begin, at "
+        "{:.3g} m2 here, may still be hillslope; fit rivers alone with --area-min-m2",
+        f.theta.value, low, high, f.area_range_m2[0]);
+}
+
 }  // namespace
 
 FitOutcome fit(const fs::path& path, const FitOptions& options, const fs::path& folder, const Messages& messages) {
-    const Target target = target_of(path, options, messages);
+    Target target = target_of(path, options, messages);
     messages.progress("fitting");
     FitOutcome outcome{infer::fit_slope_area(target.bins, options.fit), ""};
+    const std::string odd = target.measured_on == "nodes" ? "" : note_of_odd_theta(outcome.fit);
+    if (!odd.empty()) {
+        messages.warning(odd);
+        target.warnings.push_back(odd);
+    }
     messages.report(fit_line(outcome.fit, target));
     outcome.json = text_of(fit_json(outcome.fit, options, target));
     io::write_csv(folder / "fit.csv", curve_table(outcome.fit));
