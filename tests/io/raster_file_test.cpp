@@ -499,6 +499,11 @@ TEST_CASE("words in an ASCII grid that are no numbers, and numbers too many or t
     CHECK(same(heights(header + "1,5 nan 3\r\n\r\n4 -1.#IND 6\r\n"), {1.5, no_value, 3, 4, no_value, 6}));
     CHECK(
         same(heights("north: 60\nsouth: 0\neast: 90\nwest: 0\nrows: 2\ncols: 3\n1 2 3\n4 5 6\n"), {1, 2, 3, 4, 5, 6}));
+    // GDAL takes a grid of whole numbers as such, and nan for 0.
+    for (const char* word : {"nan", "-inf"}) {
+        const std::string text = header + "1 " + word + " 3\n4 5 6\n";
+        CHECK_THAT(refusal(folder.text("c.asc", text)), Contains("row 1 and column 2") && Contains("taken for 0"));
+    }
     SECTION("wherever in a long file the word stands") {
         std::string text = ascii_grid(500, 900, "500000", "4000000", "30");  // 3 MB, more than is read at once
         CHECK(io::read_raster(folder.text("a.asc", text)).raster.values[449999] == 450099);
