@@ -102,6 +102,19 @@ TEST_CASE("Where a model cannot make such statistics, the errors widen by the ro
     CHECK(apart.parameters[0].interval95[1] == Approx(1 + 4.303 / std::sqrt(3.0)).epsilon(0.05));
 }
 
+TEST_CASE("That the mean comes from few outcomes is in the errors") {
+    // Regressed on 20 outcomes evenly over the box, the mean in its middle has 9/(4·20) of their variance. The scatter
+    // of three statistics from 17 degrees of freedom, inverted, makes variances 15/17 of what they are (Wishart).
+    double sum = 0;
+    constexpr int trials = 2000;
+    for (std::uint64_t seed = 1; seed <= trials; ++seed) {
+        const Match found = match(three_copies, std::vector<double>{0.5, 0.5, 0.5},
+                                  {.ranges = {{-50, 50}}, .most_rounds = 1, .draws = 20, .seed = 100 * seed});
+        sum += std::pow(found.parameters[0].standard_error, 2) / (0.01 / 3);
+    }
+    CHECK(sum / trials == Approx(15.0 / 17 * (1 + 9.0 / 80)).epsilon(0.04));
+}
+
 TEST_CASE("On average what is left is as large as chance makes it, and never widens what is known") {
     double sum = 0;
     constexpr int trials = 200;
