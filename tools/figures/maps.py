@@ -338,6 +338,7 @@ def single(raster, network, studied=None):
     ratio = (top - bottom) / (right - left) * terrain.aspect
     panel = min(5.3, 5.9 / ratio)
     drawing = style.figure(max(2.4, panel * ratio + 0.75), panel + 1.3)
+    drawing.get_layout_engine().set(w_pad=0.1)  # inches: a map keeps its shape, which the layout takes from the margin
     grid = drawing.add_gridspec(2, 1, height_ratios=(panel * ratio, KEY_HEIGHT))
     axes = drawing.add_subplot(grid[0])
     limits = height_range(terrain)
