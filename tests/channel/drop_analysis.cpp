@@ -29,18 +29,41 @@ TEST_CASE("Drops of a drawn river are compared by Student's t as worked out by h
     CHECK(tests[2].first_order == 0);
 }
 
-TEST_CASE("The threshold is the smallest at which the drops agree, whatever the order of the tests") {
-    const auto test = [](double threshold, double t) { return DropTest{threshold, 9, 9, 1, 1, t}; };
+namespace {
+
+DropTest drop_test(double threshold, double t, Index higher_order) { return {threshold, 30, higher_order, 1, 1, t}; }
+
+}  // namespace
+
+TEST_CASE("The threshold is the smallest from which on the drops agree, whatever the order of the tests") {
     const double nan = std::nan("");
-    CHECK(threshold_by_drops(std::vector{test(400, 0.1), test(100, -5), test(200, 1.9)}) == 200.0);
-    CHECK(!threshold_by_drops(std::vector{test(100, -5), test(200, 2), test(400, nan)}));
+    const auto& t = drop_test;
+    CHECK(threshold_by_drops(std::vector{t(400, 0.1, 9), t(100, -5, 9), t(200, 1.9, 9)}) == 200.0);
+    CHECK(threshold_by_drops(std::vector{t(400, 1, 9), t(100, 1, 9), t(200, -1, 9)}) == 100.0);
+    CHECK(!threshold_by_drops(std::vector{t(100, -5, 9), t(200, 2, 9), t(400, nan, 9)}));
     CHECK(!threshold_by_drops({}));
-    const std::vector crossing{test(100, 9),  test(200, 1),  test(400, -3),
-                               test(800, -1), test(1600, 0), test(3200, nan)};
-    CHECK(threshold_by_drops(crossing) == 200.0);
-    CHECK(lasting_threshold_by_drops(crossing) == 800.0);
-    CHECK(lasting_threshold_by_drops(std::vector{test(400, 1), test(100, 1), test(200, -1)}) == 100.0);
-    CHECK(!lasting_threshold_by_drops(std::vector{test(100, 1), test(200, 2), test(400, nan)}));
+    // t changes its sign at 200 and is still far from 0 above.
+    const std::vector crossing{t(100, 9, 9),    t(200, 1, 9),  t(400, -3, 9),
+                               t(800, -2.1, 9), t(1600, 0, 9), t(3200, nan, 9)};
+    CHECK(first_threshold_by_drops(crossing) == 200.0);
+    CHECK(lasting_threshold_by_drops(crossing) == 1600.0);
+    CHECK(threshold_by_drops(crossing) == 1600.0);
+}
+
+TEST_CASE("One larger threshold may differ as chance does, not two, nor by far") {
+    const auto& t = drop_test;
+    CHECK(threshold_by_drops(std::vector{t(100, -4, 9), t(200, -1, 9), t(400, 2.5, 9), t(800, 1, 9)}) == 200.0);
+    CHECK(threshold_by_drops(std::vector{t(100, -4, 9), t(200, -1, 9), t(400, 3.0, 9), t(800, 1, 9)}) == 800.0);
+    CHECK(threshold_by_drops(std::vector{t(200, -1, 9), t(400, 2.0, 9), t(800, 2.1, 9), t(1600, 1, 9)}) == 1600.0);
+}
+
+TEST_CASE("A threshold that leaves four streams of higher order lasts only where no other agrees before") {
+    const auto& t = drop_test;
+    const std::vector few{t(100, -1, 9), t(200, -4, 9), t(400, 0, 4)};
+    CHECK(!lasting_threshold_by_drops(few));
+    CHECK(threshold_by_drops(few) == 100.0);
+    CHECK(threshold_by_drops(std::vector{t(100, -4, 9), t(200, -3, 5), t(400, 0, 4)}) == 400.0);
+    CHECK(threshold_by_drops(std::vector{t(100, -1, 9), t(200, -4, 9), t(400, 0, 5)}) == 400.0);
 }
 
 TEST_CASE(

@@ -37,7 +37,7 @@ Json analyzed(const Raster& raster, ChannelRule rule, const std::filesystem::pat
 
 }  // namespace
 
-TEST_CASE("Channels by drops begin at the least area whose test passes, and each test counts that area's streams",
+TEST_CASE("Channels by drops begin at the least area from which on tests pass, and each test counts that area's streams",
           "[channel choice]") {
     const Raster dem = jacksboro();
     const RasterMeasurement m = measured(dem, ChannelRule::drop);

@@ -54,7 +54,7 @@ std::vector<DropTest> drop_analysis(const terrain::FlowGraph& graph, std::span<c
     return tests;
 }
 
-std::optional<double> threshold_by_drops(std::span<const DropTest> tests) {
+std::optional<double> first_threshold_by_drops(std::span<const DropTest> tests) {
     std::vector<DropTest> upwards(tests.begin(), tests.end());
     std::ranges::sort(upwards, {}, &DropTest::threshold);
     for (const DropTest& test : upwards) {
@@ -66,12 +66,20 @@ std::optional<double> threshold_by_drops(std::span<const DropTest> tests) {
 std::optional<double> lasting_threshold_by_drops(std::span<const DropTest> tests) {
     std::vector<DropTest> downwards(tests.begin(), tests.end());
     std::ranges::sort(downwards, std::ranges::greater{}, &DropTest::threshold);
+    constexpr Index enough = 5;
     std::optional<double> lasting;
+    int differing = 0;
     for (const DropTest& test : downwards) {
-        if (std::abs(test.t) >= 2) break;
-        if (std::abs(test.t) < 2) lasting = test.threshold;
+        differing += std::abs(test.t) >= 2;
+        if (differing > 1 || std::abs(test.t) >= 3) break;
+        if (std::abs(test.t) < 2 && std::min(test.first_order, test.higher_order) >= enough) lasting = test.threshold;
     }
     return lasting;
+}
+
+std::optional<double> threshold_by_drops(std::span<const DropTest> tests) {
+    const std::optional<double> lasting = lasting_threshold_by_drops(tests);
+    return lasting ? lasting : first_threshold_by_drops(tests);
 }
 
 std::vector<double> slope_area_product(const terrain::FlowGraph& graph, std::span<const double> drainage_area_m2,

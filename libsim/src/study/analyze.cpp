@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <future>
 
@@ -47,15 +48,21 @@ void add_evidence(Json& channels, const ChannelEvidence& evidence) {
     channels["drop_analysis"] = tests;
 }
 
+/// Whether some test of a larger threshold says that drops differ.
+bool differs_above(const std::vector<channel::DropTest>& tests, double threshold) {
+    return std::ranges::any_of(
+        tests, [&](const channel::DropTest& test) { return test.threshold > threshold && std::abs(test.t) >= 2; });
+}
+
 /// Where drops of channels that begin finer or coarser than the choice speak against it.
 void note_crossing_drops(const ChannelEvidence& evidence, std::vector<std::string>& notes) {
-    const auto chosen = channel::threshold_by_drops(evidence.drop_tests);
+    const auto first = channel::first_threshold_by_drops(evidence.drop_tests);
     const auto lasting = channel::lasting_threshold_by_drops(evidence.drop_tests);
-    if (!chosen || lasting == chosen) return;
+    if (!first || first == lasting || !differs_above(evidence.drop_tests, *first)) return;
     notes.push_back(fmt::format(
         "channels: the mean drops of streams agree at a threshold of {:g} m2 but differ again above it{}: look "
         "at drop_analysis before trusting the choice",
-        *chosen, lasting ? fmt::format(", and agree from {:g} m2 on", *lasting) : ""));
+        *first, lasting ? fmt::format("; taken is {:g} m2, from which on they agree", *lasting) : ""));
 }
 
 /// Channels of a few cells are hillslopes: on small rasters the default comes to that.
@@ -180,7 +187,8 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
     const HeightSurvey survey = survey_heights(dem.raster);
     const std::vector<std::string> hints = survey_hints(survey, dem.raster, m.vertical_quantum_m);
     summary["ingest"] = ingest_json(dem, m, survey, hints);
-    explain_null("ingest", summary["ingest"], "there are too few cells of different height, or none whose roughness is more than rounding", notes);
+    explain_null("ingest", summary["ingest"],
+                 "there are too few cells of different height, or none whose roughness is more than rounding", notes);
     messages.report(ingest_line(dem, m));
     for (const std::string& hint : hints) messages.warning(hint);
     for (const std::string& note : notes) {

@@ -24,13 +24,19 @@ std::vector<DropTest> drop_analysis(const terrain::FlowGraph&, std::span<const d
                                     std::span<const double> drainage_area_m2, std::span<const double> elevation_m,
                                     std::span<const std::uint8_t> used, std::span<const double> thresholds);
 
-/// The smallest threshold at which the mean drops of first-order streams do not differ from those of higher
-/// ones (|t| < 2; Tarboton, Bras & Rodriguez-Iturbe 1991): the finest network that still obeys the law of constant drops.
-std::optional<double> threshold_by_drops(std::span<const DropTest>);
+/// The smallest threshold at which the mean drops of first-order streams do not differ from those of higher ones,
+/// |t| < 2. Where larger ones differ again the mean drops may only cross there, from first-order streams that fall
+/// further to such that fall less.
+std::optional<double> first_threshold_by_drops(std::span<const DropTest>);
 
-/// The smallest threshold from which on no test says that the drops differ. Where it lies above `threshold_by_drops`,
-/// the mean drops only cross there, from first-order streams that fall further to such that fall less.
+/// The smallest threshold from which on they do not differ, of those with at least five streams on either side, as with
+/// fewer hardly anything differs. Of the larger thresholds one may say otherwise with |t| < 3: of ten tests of streams
+/// that fall alike, one comes to 2 in four cases of ten by chance.
 std::optional<double> lasting_threshold_by_drops(std::span<const DropTest>);
+
+/// The lasting threshold, the finest network that obeys the law of constant drops as all coarser ones do (Tarboton,
+/// Bras & Rodriguez-Iturbe 1991); where there is none, the first.
+std::optional<double> threshold_by_drops(std::span<const DropTest>);
 
 /// The slope–area product A·S² (m²; Montgomery & Dietrich 1992), the largest at or upstream of each node, so that a
 /// channel once begun goes on. S is the slope to the receiver on the conditioned surface; 0 where nothing falls.
