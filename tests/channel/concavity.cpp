@@ -113,6 +113,42 @@ TEST_CASE(
     CHECK(at_an_end > 3);
 }
 
+TEST_CASE(
+    "Rivers without tributaries beside one that has some change neither collinearity and disorder nor their errors") {
+    const Profile alone = rivers(1, 150, 0.45, 3, 0.3, straight);
+    Profile with_rows = alone;
+    for (Index river = 1; river <= 8; ++river) {
+        for (Index i = 0; i < 30; ++i) {
+            with_rows.below.push_back(i == 0 ? none : with_rows.size() - 1);
+            with_rows.node.push_back(with_rows.size());
+            with_rows.river.push_back(river);
+            with_rows.length_m.push_back(i == 0 ? 0 : 100);
+            with_rows.area_m2.push_back(1e6 * (30 - i));
+            with_rows.elevation_m.push_back(3.0 * i + 0.02 * i * i);
+        }
+    }
+    const Concavity one = concavity(alone), many = concavity(with_rows);
+    CHECK(many.collinearity.value == one.collinearity.value);
+    CHECK(many.collinearity.interval95 == one.collinearity.interval95);
+    CHECK(many.disorder.value == Approx(one.disorder.value).margin(1e-9));
+    CHECK(many.disorder.standard_error == Approx(one.disorder.standard_error).epsilon(1e-9));
+    CHECK(std::isnan(one.linearity.standard_error));
+    CHECK(many.linearity.standard_error > 0);  // each has a line of its own
+}
+
+TEST_CASE("An interval holds its estimate well inside, or there is none") {
+    int known = 0;
+    for (std::uint32_t seed = 0; seed < 100; ++seed) {
+        const Concavity best = concavity(rivers(1, 12, 0.45, seed, 0.3, straight));
+        for (const Estimate& one : {best.collinearity, best.disorder}) {
+            const auto [low, high] = one.interval95;
+            known += !std::isnan(low);
+            CHECK((std::isnan(low) || (low < one.value && one.value < high)));
+        }
+    }
+    CHECK(known > 150);
+}
+
 TEST_CASE("A river without tributaries, a flat one and none at all have no collinearity and no disorder") {
     const auto none_of = [](const Profile& profile) {
         const Concavity c = concavity(profile);

@@ -24,6 +24,15 @@ struct MisfitTable {
     std::vector<std::vector<double>> misfit, weight;
 
     Index blocks() const { return misfit.empty() ? 0 : static_cast<Index>(misfit.front().size()); }
+
+    /// Those that say anything at all of θ: a river without tributaries has no disorder, whatever θ is.
+    std::vector<Index> deciding() const {
+        std::vector<Index> found;
+        for (Index block = 0; block < blocks(); ++block) {
+            if (std::ranges::any_of(misfit, [&](const auto& row) { return row[block] > 0; })) found.push_back(block);
+        }
+        return found;
+    }
 };
 
 /// Σ times·misfit / Σ times·weight at each θ; a θ without weight is infinitely bad.
@@ -64,25 +73,31 @@ double error_of(const std::array<double, 2>& interval95) {
     return 0.5 * (inside(interval95[1]) - inside(interval95[0])) / normal_half_width;
 }
 
-/// `theta_of(times)`: the estimate when each block counts as often as it was drawn.
+/// Blocks that are drawn, of so many: those that decide.
+struct Blocks {
+    Index count = 0;
+    std::vector<Index> drawn;
+};
+
+/// Gives the estimate its interval and error; `theta_of(times)` is the estimate when each block counts as often as it
+/// was drawn. An interval with the estimate on its end, as where one block of a few decides all, is none.
 template <class ThetaOf>
-Estimate with_bootstrap(Index blocks, const ConcavityOptions& options, std::uint32_t stream, ThetaOf theta_of,
-                        Index resamples) {
-    Estimate estimate{nan, nan, {nan, nan}};
-    if (blocks == 0) return estimate;
-    estimate.value = inside(theta_of(std::vector<double>(blocks, 1)));
-    if (std::isnan(estimate.value) || blocks < options.smallest_sample) return estimate;
+void add_bootstrap(Estimate& estimate, const Blocks& blocks, const ConcavityOptions& options, std::uint32_t stream,
+                   ThetaOf theta_of, Index resamples) {
+    const auto many = static_cast<Index>(blocks.drawn.size());
+    if (std::isnan(estimate.value) || many < options.smallest_sample) return;
     Random random(options.seed, stream);
     std::vector<double> values;
     for (Index resample = 0; resample < resamples; ++resample) {
-        std::vector<double> times(blocks, 0);
-        for (Index draw = 0; draw < blocks; ++draw) ++times[random.below(blocks)];
+        std::vector<double> times(blocks.count, 0);
+        for (Index draw = 0; draw < many; ++draw) ++times[blocks.drawn[random.below(many)]];
         const double theta = theta_of(times);
         if (!std::isnan(theta)) values.push_back(theta);
     }
-    estimate.interval95 = {quantile(values, 0.025), quantile(values, 0.975)};
-    estimate.standard_error = error_of(estimate.interval95);
-    return estimate;
+    const std::array<double, 2> interval{quantile(values, 0.025), quantile(values, 0.975)};
+    if (!(interval[0] < estimate.value && estimate.value < interval[1])) return;
+    estimate.interval95 = interval;
+    estimate.standard_error = error_of(interval);
 }
 
 /// Sums over one river from which the straightness of elevation over χ follows.
@@ -105,7 +120,7 @@ struct Rivers {
     MainStreams streams;
     std::vector<Index> tributary;  ///< by row: number of the tributary of a trunk it belongs to, `none` on the trunk
     Index tributaries = 0;
-    bool many = false;             ///< enough rivers to resample them; else their tributaries are
+    bool many = false;             ///< enough rivers with tributaries to resample them; else their tributaries are
     std::vector<Index> by_height;  ///< rows that count, river by river, upwards
     std::vector<Index> begin;      ///< count + 1: where each river begins in it
 };
@@ -119,14 +134,18 @@ std::vector<Index> river_sizes(const Profile& profile) {
     return sizes;
 }
 
-void number_tributaries(const Profile& profile, Rivers& r) {
+/// Returns how many rivers have any.
+Index number_tributaries(const Profile& profile, Rivers& r) {
     r.tributary.assign(profile.size(), none);
+    std::vector<std::uint8_t> joined(r.count, 0);
     for (const Index i : r.row) {
         const Index stream = r.streams.stream[i];
         if (r.streams.parent[stream] == none) continue;
         const Index below = r.tributary[profile.below[i]];
         r.tributary[i] = below == none ? r.tributaries++ : below;
+        joined[r.river[i]] = 1;
     }
+    return static_cast<Index>(std::ranges::count(joined, 1));
 }
 
 void sort_by_height(const Profile& profile, Rivers& r) {
@@ -152,7 +171,6 @@ Rivers rivers_of(const Profile& profile, const ConcavityOptions& options) {
     for (std::size_t river = 0; river < sizes.size(); ++river) {
         if (sizes[river] >= options.smallest_river) number[river] = r.count++;
     }
-    r.many = r.count >= options.smallest_sample;
     r.height_m.assign(profile.size(), 0);
     r.river.assign(profile.size(), none);
     for (Index i = 0; i < profile.size(); ++i) {
@@ -162,7 +180,7 @@ Rivers rivers_of(const Profile& profile, const ConcavityOptions& options) {
         if (r.river[i] != none) r.row.push_back(i);
     }
     r.streams = main_streams(profile);
-    number_tributaries(profile, r);
+    r.many = number_tributaries(profile, r) >= options.smallest_sample;
     sort_by_height(profile, r);
     return r;
 }
@@ -312,17 +330,30 @@ class ChiLadder {
     std::vector<double> step_, ratio_, chi_m_;
 };
 
-/// The θ of least mean misfit, as a function of how often each block is drawn.
-auto least_of(const MisfitTable& table) {
-    return [&table](const std::vector<double>& times) { return least_at(mean_misfits(table, times)); };
+/// The θ of least mean misfit of a table, all blocks once.
+double least_of(const MisfitTable& table) {
+    return least_at(mean_misfits(table, std::vector<double>(table.blocks(), 1)));
+}
+
+Estimate value_alone(double theta) { return {inside(theta), nan, {nan, nan}}; }
+
+/// By a table whose blocks are resampled.
+Estimate estimate_of(const MisfitTable& table, const ConcavityOptions& options, std::uint32_t stream) {
+    if (table.blocks() == 0) return value_alone(nan);
+    Estimate e = value_alone(least_of(table));
+    const auto theta_of = [&](const std::vector<double>& times) { return least_at(mean_misfits(table, times)); };
+    add_bootstrap(e, {table.blocks(), table.deciding()}, options, stream, theta_of, options.resamples);
+    return e;
 }
 
 Estimate disorder_estimate(const Rivers& r, const Disorder& d, const ConcavityOptions& options) {
-    if (r.many) return with_bootstrap(r.count, options, 2, least_of(d.by_river), options.resamples);
+    if (r.many || r.tributaries == 0) return estimate_of(d.by_river, options, 2);
     constexpr Index fewer = 5;  // each resample costs 61 passes over the sample
+    Estimate e = value_alone(least_of(d.by_river));
+    std::vector<Index> all(r.tributaries);
+    std::iota(all.begin(), all.end(), 0);
     const auto theta_of = [&](const std::vector<double>& times) { return disorder_theta(r, d, times); };
-    Estimate e = with_bootstrap(r.tributaries, options, 2, theta_of, std::max<Index>(1, options.resamples / fewer));
-    e.value = inside(least_of(d.by_river)(std::vector<double>(r.count, 1)));
+    add_bootstrap(e, {r.tributaries, all}, options, 2, theta_of, std::max<Index>(1, options.resamples / fewer));
     return e;
 }
 
@@ -340,8 +371,8 @@ Concavity concavity(const Profile& profile, const ConcavityOptions& options) {
         add_collinearity(rivers, trunks, ladder.chi_m(), collinear);
         add_disorder(rivers, ladder.chi_m(), disorder);
     }
-    return {.linearity = with_bootstrap(linear.blocks(), options, 0, least_of(linear), options.resamples),
-            .collinearity = with_bootstrap(collinear.blocks(), options, 1, least_of(collinear), options.resamples),
+    return {.linearity = estimate_of(linear, options, 0),
+            .collinearity = estimate_of(collinear, options, 1),
             .disorder = disorder_estimate(rivers, disorder, options)};
 }
 

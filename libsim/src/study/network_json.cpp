@@ -93,7 +93,7 @@ Json chi_json(const ChiStatistics& c, std::vector<std::string>& notes) {
     explain_null("chi", json,
                  "ksn needs a river that falls by a segment's drop; each theta a river of at least 20 nodes whose best "
                  "value lies within 0 to 1.5 (collinearity and disorder: with tributaries), and its errors at least "
-                 "five such rivers or tributaries and an interval that ends within 0 to 1.5",
+                 "five such rivers or tributaries and an interval within 0 to 1.5 that has the value well inside",
                  notes);
     json["knickpoints"] = c.knickpoints.size();
     json["knickpoint_prominence_m"] = c.knickpoint_prominence_m;

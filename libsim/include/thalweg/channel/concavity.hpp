@@ -31,11 +31,13 @@ struct ConcavityOptions {
 /// The interval are the 2.5 and 97.5 % quantiles of a bootstrap over the rivers, the error half its width over 1.96:
 /// both are of the same, where few blocks give a skewed lot with outliers, whose standard deviation may be twice as
 /// large. A resample whose least lies at an end of the range counts there; an interval that ends at 0 or 1.5 may go on
-/// beyond and has no error. Where there are fewer than `smallest_sample` rivers, collinearity and disorder resample the
+/// beyond and has no error. Only rivers that say anything of θ are drawn (for collinearity and disorder those with
+/// tributaries). Where there are fewer than `smallest_sample` of them, collinearity and disorder resample the
 /// trunks' tributaries instead: the trunk's own scatter is then not in the error, which is too small (with slopes
 /// scattered by a factor of 1.35 from node to node the interval held the truth in about 60 of 100 single rivers; with
 /// twenty of them, in 90 for collinearity and 75 for disorder, whose least itself is shifted by scatter). NaN for fewer
-/// than `smallest_sample` of those as well. Cost: 61 passes over the nodes.
+/// than `smallest_sample` of those as well, and where an end of the interval is the estimate or lies on its other side,
+/// as when one of a few tributaries decides all. Cost: 61 passes over the nodes.
 struct Concavity {
     Estimate linearity, collinearity, disorder;
 };
