@@ -92,7 +92,6 @@ class Grower {
     const double link_limit_;
     double shortest_split_;  ///< m
     Candidates candidates_;
-    std::vector<std::uint8_t> is_refused_;
     std::uint64_t step_ = 0;
     std::uint64_t taken_ = 0;
     Index lengthened_ = 0;
@@ -130,21 +129,20 @@ double Grower::missing_length() const {
 }
 
 void Grower::enter(Index link) {
-    is_refused_.resize(tree_.links.size(), 0);
     const bool long_enough = tree_.links[link].length_m >= shortest_split_;
     const bool may_grow = long_enough || beyond_source(link) > room_beyond_source * c_;
-    if (excess(link) > 0 && may_grow && !is_refused_[link]) candidates_.push({excess(link), link});
+    if (excess(link) > 0 && may_grow) candidates_.push({excess(link), link});
 }
 
-/// The link with the largest excess. Entries of links that have changed since are passed over: each change enters anew.
+/// The link with the largest excess. It is as it was when it was entered: only the link that was taken grows, within
+/// its own polygons, and enters anew with those that it gave rise to. So no link waits twice, and none that was refused
+/// does.
 bool Grower::take_candidate(Index& link) {
     Candidate top{};
-    while (candidates_.pop(top)) {
-        if (++taken_ % looked_ahead == 0) look_ahead();
-        link = top.link;
-        if (top.excess == excess(link) && !is_refused_[link]) return true;
-    }
-    return false;
+    if (!candidates_.pop(top)) return false;
+    if (++taken_ % looked_ahead == 0) look_ahead();
+    link = top.link;
+    return true;
 }
 
 void Grower::look_ahead() const {
@@ -167,7 +165,6 @@ bool Grower::ease_rules() {
         shortest_split_ = std::max(shortest_split_ / 2, shortest_split_at_last * c_);
     }
     ++last_resorts_;
-    std::fill(is_refused_.begin(), is_refused_.end(), 0);
     refused_ = 0;
     for (Index link = 0; link < tree_.links.size(); ++link) enter(link);
     return true;
@@ -311,7 +308,6 @@ StopReason Grower::grow_until_stopped(const Point& origin, Stages& stages) {
         if (beyond_source(link) > room_beyond_source * c_) {
             lengthen(link);
         } else if (!add_tributary(link)) {
-            is_refused_[link] = 1;
             ++refused_;
         }
     }
