@@ -3,7 +3,7 @@
 import numpy as np
 
 import style
-from bell_heights import OURS, THEIRS, axes_of, beside, few, plain_numbers, theirs
+from bell_heights import OURS, THEIRS, axes_of, beside, plain_numbers, theirs
 from fits import line, power_by_logarithms
 from harness import Case, Run, column, history, number, printed_rows, select, verdict
 

@@ -40,13 +40,6 @@ def draw_maps(paths, titles, columns, same_heights, width=7.2):
     return drawing
 
 
-def terrain_statistics(_, summary, __):
-    """What tells patterns apart that have one highest point."""
-    terrain = summary["terrain"]
-    return {"hypsometric_integral": terrain["hypsometry"]["integral"], "concavity": terrain["slope_area"]["theta"],
-            "bifurcation_ratio": terrain["horton"]["RB"]["regression"], "domain_area_m2": summary["domain_area_m2"]}
-
-
 def maps_of(titles, columns, same_heights):
     def draw(rows, _, folders):
         return draw_maps([os.path.join(folder, "elevation.tif") for folder in folders], titles(rows), columns, same_heights)

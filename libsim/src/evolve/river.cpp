@@ -58,6 +58,11 @@ std::vector<double> slopes(const Edges& edges, const Drainage& drainage, const R
 
 }  // namespace
 
+double MassBalance::relative_residual() const {
+    const double turned_over = uplifted_m3 > 0 ? uplifted_m3 : exported_m3;
+    return turned_over > 0 ? (uplifted_m3 - exported_m3 - stored_m3) / turned_over : 0;
+}
+
 Drainage drain(const Grid& grid, const Landscape& landscape, const Setting& setting, terrain::Receiver receiver,
                const FlowDirections& frozen) {
     return drained(grid, landscape, setting, {.receiver = receiver}, frozen);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/evolve/slope.hpp"
 
-#include "thalweg/evolve/river.hpp"
-
 namespace thalweg::evolve {
 namespace {
 
@@ -92,17 +90,6 @@ SlopeAndIncision SlopeSolver::solve_scaled(double drop, double length, double c)
     }
     root.incision_m = incision();
     return root;
-}
-
-SlopeSolution implicit_slope(double drop, double length, double c, double n) {
-    if (!(drop > 0)) return {0, 0};
-    const SlopeAndIncision solution = SlopeSolver(n)(drop, length, c);
-    return {solution.slope, solution.iterations};
-}
-
-double MassBalance::relative_residual() const {
-    const double turned_over = uplifted_m3 > 0 ? uplifted_m3 : exported_m3;
-    return turned_over > 0 ? (uplifted_m3 - exported_m3 - stored_m3) / turned_over : 0;
 }
 
 }  // namespace thalweg::evolve

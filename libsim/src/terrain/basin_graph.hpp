@@ -45,10 +45,6 @@ inline bool lower(const Pass& a, const Pass& b) {
     return key(a) < key(b);
 }
 
-/// A pass higher than all others.
-inline constexpr Pass no_pass{
-    std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity(), none, none, none, none};
-
 /// Basins joined to larger and larger pieces, each named by the number that `find` gives (the outside's is not fixed).
 class Joined {
   public:

@@ -117,13 +117,4 @@ StepReport erode(const Mesh&, const Drainage&, const River&, const Setting&, dou
 std::vector<double> slopes_along_flow(const Grid&, const Drainage&, const River&, const Landscape&);
 std::vector<double> slopes_along_flow(const Mesh&, const Drainage&, const River&, const Landscape&);
 
-/// Slope S ≥ 0 that solves drop = L·S + c·S^n, that is the end-of-step slope over length L of a node `drop` above its
-/// receiver before erosion, with c = dt·k·A^m. Bounded iterations, for n from 0.3 to 5, to the last bits; 0 without
-/// drop. For many nodes with one n, make one `SlopeSolver` (`thalweg/evolve/slope.hpp`), which this calls.
-struct SlopeSolution {
-    double slope;
-    int iterations;
-};
-SlopeSolution implicit_slope(double drop, double length, double c, double n);
-
 }  // namespace thalweg::evolve

@@ -18,7 +18,8 @@ struct SlopeAndIncision {
     int iterations;     ///< calls of pow; 0 where none is needed
 };
 
-/// Solves drop = length·S + c·S^n for many nodes with one n.
+/// Solves drop = length·S + c·S^n for many nodes with one n: S is the slope that a node `drop` above its receiver has
+/// at the end of an implicit step, c = dt·k·A^m.
 ///
 /// With s = S·length/drop and g = (c/length)·(drop/length)^(n−1) the equation is s + g·s^n = 1, and log2 s is a smooth
 /// function of log2 g alone: a small table of it gives S to about 1e-5, and one evaluation of S^n with a correction of
@@ -40,8 +41,8 @@ class SlopeSolver {
         return solve_power(drop, length, c);
     }
 
-    /// The same for `lanes` nodes at a time, to the same bits; returns the largest number of iterations. Lanes without
-    /// drop are given slope 0 and incision 0. A loop without branches, so that it vectorises.
+    /// The same for `lanes` nodes at a time and n ≠ 1, to the same bits; returns the largest number of iterations.
+    /// Lanes without drop are given slope 0 and incision 0. A loop without branches, so that it vectorises.
     template <int lanes>
     int solve(const double* drop, const double* length, const double* c, double* slope, double* incision_m) const;
 
