@@ -2,7 +2,6 @@
 #include "io/raster_place.hpp"
 
 #include <fmt/format.h>
-#include <ogr_spatialref.h>
 
 #include <GeographicLib/Geodesic.hpp>
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include <numbers>
 #include <optional>
 
+#include "io/crs_text.hpp"
 #include "io/gdal_guard.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/io/geodesy.hpp"
@@ -80,14 +80,6 @@ std::string epsg_or_name(OGRSpatialReference crs) {
     if (authority != nullptr && code != nullptr) return fmt::format("{}:{}", authority, code);
     const char* name = crs.GetName();
     return name == nullptr ? "" : name;
-}
-
-std::string wkt_of(const OGRSpatialReference& crs) {
-    char* text = nullptr;
-    crs.exportToWkt(&text);
-    const std::string wkt = text == nullptr ? "" : text;
-    CPLFree(text);
-    return wkt;
 }
 
 /// Metres per unit of a band's unit name; 0 where the name is not known.

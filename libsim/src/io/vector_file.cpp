@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 
+#include "io/crs_text.hpp"
 #include "io/gdal_guard.hpp"
 #include "thalweg/core/error.hpp"
 
@@ -29,14 +30,6 @@ OGRSpatialReference wanted_crs(const std::string& wkt) {
         throw Error("the coordinate system of the terrain cannot be understood");
     }
     return east_first(crs);
-}
-
-std::string wkt_of(const OGRSpatialReference& crs) {
-    char* text = nullptr;
-    crs.exportToWkt(&text);
-    const std::string wkt = text == nullptr ? "" : text;
-    CPLFree(text);
-    return wkt;
 }
 
 class Reader {
@@ -94,7 +87,8 @@ class Reader {
             if (geometry == nullptr || geometry->IsEmpty()) continue;
             std::unique_ptr<OGRGeometry> copy(geometry->getLinearGeometry());
             if (transformation && copy->transform(transformation.get()) != OGRERR_NONE) {
-                throw Error(fmt::format("a shape of {} has no place in the terrain's coordinate system", path_.string()));
+                throw Error(
+                    fmt::format("a shape of {} has no place in the terrain's coordinate system", path_.string()));
             }
             add(*copy);
         }
