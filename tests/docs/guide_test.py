@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything the program writes or takes is defined in the user guide: guide_test.py THALWEG SOURCE_FOLDER
 
-Runs the embedded study, a fit of growth, an analysis with derivatives, and looks for each file, JSON key, CSV column, GeoPackage column, option and experiment key
-between backticks in docs/guide.md; and for the experiment keys the other way round.
+Runs the embedded study, a fit of growth, an analysis with derivatives, a growth and a simulation of their own, and
+looks for each file, JSON key, CSV column, GeoPackage column, option and experiment key between backticks in
+docs/guide.md; and for the experiment keys the other way round.
 """
 import json
 import re
@@ -61,13 +62,28 @@ def written_words(folder):
     return seen
 
 
-BASIN = """[basin]
+GROW = """[basin]
 outline = [[0, 0], [4000, 500], [3000, 5000], [-1000, 4000]]
 trunk = [[0, 0], [1500, 3500]]
 [growth]
 channel_maintenance_m = 400
 [output]
 resolution = 100
+"""
+
+SIMULATE = """[domain]
+size_m = [10000, 8000]
+nodes = 1000
+[uplift]
+rate_m_per_yr = 1e-3
+[river]
+k = 2e-5
+m = 0.5
+[time]
+step_yr = 1e5
+max_steps = 2
+[output]
+mesh_file = "obj"
 """
 
 
@@ -87,20 +103,25 @@ def taken_words():
     return {word: where for word, where in seen.items() if word not in OPTIONS_OF_LIBRARIES}
 
 
+def all_words(folder):
+    """Word: where it was seen, for all that commands write and take."""
+    for name, text in (("grow", GROW), ("simulate", SIMULATE)):
+        (folder / f"{name}.toml").write_text(text, encoding="utf-8")
+    dem = SOURCE / "validation" / "data" / "jacksboro.tif"
+    seen = taken_words()
+    for number, command in enumerate((("run", SOURCE / "validation" / "jacksboro.toml", "--set", "study.realisations=2"),
+                                      ("fit", dem, "--method", "growth"), ("analyze", dem, "--derivatives"),
+                                      ("grow", folder / "grow.toml"), ("simulate", folder / "simulate.toml"))):
+        out = folder / str(number)
+        subprocess.run([THALWEG, *command, "--out", out, "--no-figures", "--quiet"], check=True)
+        seen.update(written_words(out))
+    return seen
+
+
 def main():
     guide = words_of_guide()
     with tempfile.TemporaryDirectory() as folder:
-        study = Path(folder) / "study"
-        subprocess.run([THALWEG, "run", SOURCE / "validation" / "jacksboro.toml", "--out", study, "--no-figures",
-                        "--set", "study.realisations=2",
-                        "--quiet"], check=True)
-        growth = Path(folder) / "growth"
-        subprocess.run([THALWEG, "fit", SOURCE / "validation" / "data" / "jacksboro.tif", "--method", "growth", "--out",
-                        growth, "--no-figures", "--quiet"], check=True)
-        derived = Path(folder) / "derived"
-        subprocess.run([THALWEG, "analyze", SOURCE / "validation" / "data" / "jacksboro.tif", "--derivatives", "--out",
-                        derived, "--no-figures", "--quiet"], check=True)
-        words = {**written_words(study), **written_words(growth), **written_words(derived), **taken_words()}
+        words = all_words(Path(folder))
     missing = {word: where for word, where in words.items() if word not in guide}
     for word, where in sorted(missing.items()):
         print(f"docs/guide.md does not define {word} ({where})")
