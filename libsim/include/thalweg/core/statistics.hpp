@@ -18,8 +18,8 @@ struct Estimate {
 struct Line {
     Estimate slope;
     Estimate intercept;
-    double r2;                 ///< weighted coefficient of determination
-    double reduced_chi2;       ///< weighted residual sum of squares over the degrees of freedom
+    double r2;            ///< weighted coefficient of determination
+    double reduced_chi2;  ///< weighted residual sum of squares over the degrees of freedom
 };
 
 /// Fits a line. `weights` are inverse variances, or empty for equal ones. The errors are scaled by the residual scatter
@@ -40,7 +40,7 @@ struct PowerLawFit {
 /// Fits ln y on ln x with fit_line; pairs in which either is not above zero are left out.
 PowerLawFit fit_power_law(std::span<const double> x, std::span<const double> y, std::span<const double> weights = {});
 
-double mean(std::span<const double> values);
+double mean(std::span<const double> values);  ///< NaN for none
 
 /// Standard deviation of a sample, with n − 1; NaN for fewer than two values.
 double standard_deviation(std::span<const double> values);

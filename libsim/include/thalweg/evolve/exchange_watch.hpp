@@ -22,7 +22,7 @@ struct ExchangeWatch {
     FlowDirections frozen;           ///< direction of each frozen node, `no_flow` elsewhere; empty until one is frozen
 };
 
-ExchangeWatch exchange_watch(Index nodes, Index patience);
+ExchangeWatch exchange_watch(Index nodes, Index patience);  ///< before the first step, with nothing frozen
 
 /// To be called with the directions of every step; returns how many nodes changed since the call before.
 Index observe(ExchangeWatch&, const FlowDirections&);
@@ -33,7 +33,7 @@ bool only_the_same(const ExchangeWatch&);
 /// Freezes the nodes that exchange receivers to their present directions and starts watching anew.
 void freeze(ExchangeWatch&);
 
-Index frozen_count(const ExchangeWatch&);
-std::vector<std::uint8_t> frozen_mask(const ExchangeWatch&);
+Index frozen_count(const ExchangeWatch&);                     ///< number of nodes that are frozen
+std::vector<std::uint8_t> frozen_mask(const ExchangeWatch&);  ///< per node, 1 where it is frozen
 
 }  // namespace thalweg::evolve

@@ -21,7 +21,7 @@ inline double dot(const Vector& a, const Vector& b) { return a.x * b.x + a.y * b
 inline Vector cross(const Vector& a, const Vector& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
-Vector unit(const Vector&);
+Vector unit(const Vector&);  ///< of length 1 in the same direction
 
 /// Towards a compass bearing (clockwise from the north) and an angle above the horizon, radians.
 Vector direction(double azimuth, double elevation);
