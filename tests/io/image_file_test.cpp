@@ -108,7 +108,8 @@ TEST_CASE("Of a coloured picture the value is the mean of the colours, and trans
 
 TEST_CASE("A raster on the map keeps its place and its voids, a plain picture has none", "[image]") {
     const TempFolder temp;
-    Raster raster{plane_grid(2, 3, 10, 10), {.west = 500, .north = 900, .cell_width = 10, .cell_height = 10}, {}};
+    Raster raster{
+        plane_grid(2, 3, 10, 10), {.west = 500, .north = 900, .cell_width = 10, .cell_height = 10, .crs_wkt = {}}, {}};
     raster.values = {1, 2, 3, 4, no_data, 6};
     io::write_raster(temp / "map.tif", raster.grid, raster.placement, raster.values, {});
     const Image image = read_image(temp / "map.tif");

@@ -45,8 +45,8 @@ struct Finished {
 /// Rasters of the result: elevation, drainage area and basin of the nearest node.
 struct Heightfield {
     Raster elevation;
-    std::vector<double> drainage_area_m2;
-    std::vector<Index> basin_of;
+    std::vector<double> drainage_area_m2 = {};
+    std::vector<Index> basin_of = {};
 };
 
 /// A raster mesh is written at its own cells. Throws Error where output.resolution asks for others.

@@ -12,9 +12,9 @@ namespace thalweg::study {
 /// Where a network grows, on a plane in metres, and where that plane lies on the map.
 struct GrowthSite {
     grow::Basin basin;
-    double unit_m = 1;    ///< metres of the plane divided by this are map coordinates
-    std::string crs_wkt;  ///< of the map; empty: nowhere in particular
-    std::vector<std::string> warnings;
+    double unit_m = 1;         ///< metres of the plane divided by this are map coordinates
+    std::string crs_wkt = {};  ///< of the map; empty: nowhere in particular
+    std::vector<std::string> warnings = {};
 };
 
 /// The basin that an experiment describes: its outline and trunk, or those of a DEM's largest complete catchment.
