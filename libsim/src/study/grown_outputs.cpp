@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
+#include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "thalweg/grow/elevations.hpp"
 #include "thalweg/mesh/triangulate_lines.hpp"
 #include "thalweg/surface/heightfield.hpp"
+#include "thalweg/surface/patch.hpp"
 
 namespace thalweg::study {
 namespace {
@@ -39,18 +42,22 @@ double sidewall_deg(const grow::Network& network, Index link, grow::Side side) {
     return std::atan(network.sidewall_slope[link][static_cast<std::size_t>(side)]) * degrees_per_radian;
 }
 
-/// Points that a triangulation is to be made of, each once.
-class PointsOnce {
-  public:
-    void add(const Point& p) {
-        if (known_.emplace(p.x, p.y).second) points_.push_back(p);
+/// The points in their order, but each place once: where it came first.
+std::vector<Point> each_once(const std::vector<Point>& points) {
+    std::vector<Index> by_place(points.size());
+    std::iota(by_place.begin(), by_place.end(), 0);
+    const auto place = [&](Index i) { return std::pair(points[i].x, points[i].y); };
+    std::ranges::sort(by_place, {}, [&](Index i) { return std::tuple(points[i].x, points[i].y, i); });
+    std::vector<std::uint8_t> is_first(points.size(), 1);
+    for (std::size_t at = 1; at < by_place.size(); ++at) {
+        is_first[by_place[at]] = place(by_place[at]) != place(by_place[at - 1]);
     }
-    const std::vector<Point>& points() const { return points_; }
-
-  private:
-    std::set<std::pair<double, double>> known_;
-    std::vector<Point> points_;
-};
+    std::vector<Point> kept;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (is_first[i]) kept.push_back(points[i]);
+    }
+    return kept;
+}
 
 /// Even–odd rule.
 bool is_inside(const grow::Network& network, std::span<const Index> polygon, const Point& p) {
@@ -88,7 +95,7 @@ void add_banks(const Experiment& e, const grow::Network& network, Index link, do
 }
 
 /// Middles of the edges that are no lines of the network.
-void add_middles(const grow::SurfaceMesh& mesh, PointsOnce& points) {
+void add_middles(const grow::SurfaceMesh& mesh, std::vector<Point>& points) {
     std::vector<std::pair<Index, Index>> lines;
     for (const grow::Edge& line : mesh.lines) lines.push_back(std::minmax(line.from, line.to));
     std::sort(lines.begin(), lines.end());
@@ -96,9 +103,39 @@ void add_middles(const grow::SurfaceMesh& mesh, PointsOnce& points) {
         for (int k = 0; k < 3; ++k) {
             const Index a = t[k], b = t[(k + 1) % 3];
             if (a > b || std::binary_search(lines.begin(), lines.end(), std::pair{a, b})) continue;
-            points.add({(mesh.x[a] + mesh.x[b]) / 2, (mesh.y[a] + mesh.y[b]) / 2});
+            points.push_back({(mesh.x[a] + mesh.x[b]) / 2, (mesh.y[a] + mesh.y[b]) / 2});
         }
     }
+}
+
+/// Where the written triangles have their corners: the mesh's own first.
+std::vector<Point> places_of_corners(const Experiment& e, const GrownTerrain& t) {
+    const grow::SurfaceMesh& mesh = t.surface.mesh;
+    std::vector<Point> places;
+    for (Index vertex = 0; vertex < mesh.size(); ++vertex) places.push_back({mesh.x[vertex], mesh.y[vertex]});
+    for (const Point& bank : banks_of(e, t).places) places.push_back(bank);
+    add_middles(mesh, places);
+    return each_once(places);
+}
+
+/// The corners with their heights, but for those beyond the surface; the triangles are still to come. They take most
+/// of the memory that a grown terrain needs, so what the heights need is gone by then.
+TriangleSurface corners_of_triangles(const Experiment& e, const GrownTerrain& t) {
+    const grow::SurfaceMesh& mesh = t.surface.mesh;
+    const std::vector<Point> places = places_of_corners(e, t);
+    const std::vector<double> rough = roughness_at(e, t, places);
+    const surface::TensionMesh tension = t.surface.tension_mesh();
+    const auto evaluated = surface::surface_at(tension, surface::tension_patches(tension, t.surface.network),
+                                               std::span(places).subspan(mesh.size()));
+    TriangleSurface surface;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const double smooth = i < mesh.size() ? mesh.height[i] : evaluated[i - mesh.size()].height;
+        if (i >= mesh.size() && !std::isfinite(smooth)) continue;
+        surface.x.push_back(places[i].x);
+        surface.y.push_back(places[i].y);
+        surface.z.push_back(smooth + rough[i]);
+    }
+    return surface;
 }
 
 Table links_layer(const Experiment& e, const GrownTerrain& t) {
@@ -240,30 +277,12 @@ Banks banks_of(const Experiment& e, const GrownTerrain& t) {
 }
 
 TriangleSurface triangles_of(const Experiment& e, const GrownTerrain& t) {
-    const grow::SurfaceMesh& mesh = t.surface.mesh;
-    PointsOnce places;
-    for (Index vertex = 0; vertex < mesh.size(); ++vertex) places.add({mesh.x[vertex], mesh.y[vertex]});
-    for (const Point& bank : banks_of(e, t).places) places.add(bank);
-    add_middles(mesh, places);
-    const std::vector<double> rough = roughness_at(e, t, places.points());
-    const std::span<const Point> added = std::span(places.points()).subspan(mesh.size());
-    const auto evaluated = surface::surface_at(t.surface.tension_mesh(), t.surface.patches, added);
-    std::vector<std::array<Index, 2>> lines;
-    for (const grow::Edge& line : mesh.lines) lines.push_back({line.from, line.to});
-    TriangleSurface surface;
+    TriangleSurface surface = corners_of_triangles(e, t);
     std::vector<Point> points;
-    const auto put = [&](const Point& p, double height) {
-        points.push_back(p);
-        surface.x.push_back(p.x);
-        surface.y.push_back(p.y);
-        surface.z.push_back(height);
-    };
-    for (Index vertex = 0; vertex < mesh.size(); ++vertex) {
-        put({mesh.x[vertex], mesh.y[vertex]}, mesh.height[vertex] + rough[vertex]);
-    }
-    for (std::size_t i = 0; i < added.size(); ++i) {
-        if (std::isfinite(evaluated[i].height)) put(added[i], evaluated[i].height + rough[mesh.size() + i]);
-    }
+    points.reserve(surface.size());
+    for (Index i = 0; i < surface.size(); ++i) points.push_back({surface.x[i], surface.y[i]});
+    std::vector<std::array<Index, 2>> lines;
+    for (const grow::Edge& line : t.surface.mesh.lines) lines.push_back({line.from, line.to});
     surface.triangles = mesh::triangulate_lines(points, lines);
     return surface;
 }

@@ -14,6 +14,7 @@
 #include "thalweg/study/channel_heads.hpp"
 #include "thalweg/study/grow.hpp"
 #include "thalweg/surface/heightfield.hpp"
+#include "thalweg/surface/patch.hpp"
 #include "thalweg/surface/roughness.hpp"
 
 namespace thalweg::study {
@@ -78,7 +79,6 @@ GrownSurface surface_over(const Experiment& e, const grow::Network& network, gro
     s.thalweg = e.growth.thalweg;
     s.network = surface::minimum_norm_network(s.tension_mesh());
     s.limited_gradients = limit_gradients(network, s);
-    s.patches = surface::tension_patches(s.tension_mesh(), s.network);
     return s;
 }
 
@@ -104,7 +104,7 @@ Raster evaluated(const Experiment& e, const GrownSurface& s, const grow::Dials& 
     constexpr Index usual_resolution = 512;
     const Mesh plane = plane_mesh(s.mesh);
     Raster raster = surface::covering_raster(plane, e.output.resolution.value_or(usual_resolution));
-    surface::evaluate(s.tension_mesh(), s.patches, raster);
+    surface::evaluate(s.tension_mesh(), surface::tension_patches(s.tension_mesh(), s.network), raster);
     if (!(e.growth.roughness_m > 0)) return raster;
     if (e.growth.roughness_kind == RoughnessKind::subdivision) {
         surface::add_roughness(plane, ridge_share(s.mesh), fractal_of(e, dials, raster.grid.east_west[0]), raster);

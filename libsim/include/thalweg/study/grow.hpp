@@ -7,17 +7,17 @@
 
 #include "thalweg/grow/surface_mesh.hpp"
 #include "thalweg/study/growth_site.hpp"
-#include "thalweg/surface/patch.hpp"
+#include "thalweg/surface/minimum_norm_network.hpp"
 
 namespace thalweg::study {
 
-/// The surface under tension over a grown network.
+/// The surface under tension over a grown network. Its patches are not kept: made where they are needed they take a
+/// moment, and kept half of the memory (`surface::tension_patches` of `tension_mesh()` and `network`).
 struct GrownSurface {
     grow::SurfaceMesh mesh;
     std::vector<double> tension;  ///< per vertex
     std::vector<surface::ExtraTension> extra_tension;
     surface::MinimumNormNetwork network;
-    std::vector<surface::TensionPatch> patches;
     Index limited_gradients = 0;  ///< vertices whose gradient was cut to that of the steepest valley side
 
     grow::Thalweg thalweg = grow::Thalweg::along_channel;
