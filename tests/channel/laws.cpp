@@ -5,8 +5,12 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <ranges>
 
 #include "support/flow_trees.hpp"
+#include "support/terrains.hpp"
+#include "thalweg/terrain/lakes.hpp"
+#include "thalweg/terrain/route.hpp"
 
 using namespace thalweg;
 using namespace thalweg::channel;
@@ -51,6 +55,20 @@ TEST_CASE("The longest way up from a node is the one a walk over all its sources
             CHECK(on_links[link] == Approx(brute[upper] + graph.length[upper]));
         }
     }
+}
+
+TEST_CASE("The longest ways up a terrain that several threads share are those of one sweep") {
+    const support::TestTerrain terrain = support::noise_terrain(450, 470, 4);
+    const auto boundary = terrain::data_edge(terrain.grid, terrain.elevation_m);
+    FlowDirections directions = terrain::route(terrain.grid, terrain.elevation_m, boundary);
+    terrain::drain_lakes(terrain.grid, terrain.elevation_m, boundary, directions);
+    const terrain::FlowGraph graph = terrain::flow_graph(terrain.grid, terrain.elevation_m, directions);
+    std::vector<double> longest(graph.size(), 0);
+    for (const Index node : std::views::reverse(graph.order)) {
+        const Index receiver = graph.receiver[node];
+        if (receiver != none) longest[receiver] = std::max(longest[receiver], longest[node] + graph.length[node]);
+    }
+    CHECK(longest_upstream_lengths(graph) == longest);
 }
 
 TEST_CASE("Basins that obey Hack's law give back its coefficient and exponent") {

@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <numbers>
+#include <ranges>
 
 #include "support/drawing.hpp"
 #include "support/terrain_oracles.hpp"
@@ -85,6 +86,33 @@ TEST_CASE("the outlet of a node is where its water ends") {
             }
         }
     }
+}
+
+TEST_CASE("outlets, labels and completeness are those of the walks on terrain that several threads share") {
+    const TestTerrain terrain = with_holes(noise_terrain(450, 470, 8), 0.0005, 8);
+    const Measured m = measure(terrain.grid, terrain.elevation_m);
+    const std::vector<Index> outlet = outlet_of(m.graph);
+    const auto apart = [](Index a, Index b) { return std::abs(int(a) - int(b)); };
+    std::vector<std::uint8_t> complete(terrain.grid.size(), 0);
+    for (const Index node : m.graph.order) {
+        const Index end = end_of_flow(m.grid, m.directions, node);
+        REQUIRE(outlet[node] == end);
+        complete[node] = m.boundary[node] == Boundary::interior || (apart(m.grid.row(node), m.grid.row(end)) <= 2 &&
+                                                                    apart(m.grid.col(node), m.grid.col(end)) <= 2);
+    }
+    for (const Index node : std::views::reverse(m.graph.order)) {
+        if (!complete[node] && m.graph.receiver[node] != none) complete[m.graph.receiver[node]] = 0;
+    }
+    CHECK(m.complete == complete);
+    const std::vector<Basin> found = basins(m.graph, m.area_m2, complete, 20, EdgeBasins::drop);
+    REQUIRE(found.size() > 100);
+    std::vector<Index> label(terrain.grid.size(), none);
+    for (Index basin = 0; basin < found.size(); ++basin) label[found[basin].outlet] = basin;
+    for (const Index node : m.graph.order) {
+        const Index receiver = m.graph.receiver[node];
+        if (receiver != none && label[receiver] != none) label[node] = label[receiver];
+    }
+    CHECK(basin_labels(m.graph, found) == label);
 }
 
 TEST_CASE("in a drawn map a catchment is complete down to where water from the edge comes in") {

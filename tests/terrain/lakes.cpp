@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 #include <cstring>
+#include <iterator>
 #include <set>
 
 #include "support/drawing.hpp"
@@ -10,6 +11,7 @@
 #include "support/terrains.hpp"
 #include "thalweg/core/parallel.hpp"
 #include "thalweg/terrain/accumulate.hpp"
+#include "thalweg/terrain/flats.hpp"
 
 using namespace thalweg;
 using namespace thalweg::terrain;
@@ -273,6 +275,25 @@ TEST_CASE("lakes come out in the same bytes on one thread and on two") {
     CHECK(directions1 == directions2);
     CHECK(same_bytes(level1, level2));
     CHECK(same_bytes(level1, fill_by_priority_flood(terrain.grid, terrain.elevation_m, boundary)));
+}
+
+TEST_CASE("what drains and fills at once gives the bytes of each alone") {
+    std::vector<TestTerrain> terrains = shaped_terrains();
+    for (std::uint64_t seed = 1; seed <= 20; ++seed)
+        std::ranges::move(assorted_terrains(seed), std::back_inserter(terrains));
+    terrains.push_back(with_holes(stepped_terrain(300, 400, 50, 3), 0.01, 3));
+    for (const auto& [name, grid, z] : terrains) {
+        INFO(name);
+        const auto boundary = data_edge(grid, z);
+        FlowDirections alone = route(grid, z, boundary);
+        resolve_flats(grid, z, boundary, alone);
+        FlowDirections together = alone;
+        const Index lakes = drain_lakes(grid, z, boundary, alone);
+        const DrainedAndFilled both = drain_and_fill(grid, z, boundary, together);
+        REQUIRE(both.lakes == lakes);
+        REQUIRE(together == alone);
+        REQUIRE(same_bytes(both.filled_m, fill(grid, z, boundary)));
+    }
 }
 
 TEST_CASE("larger worst cases fill as a priority flood does") {

@@ -4,16 +4,17 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <ranges>
+
+#include "terrain/sweeps.hpp"
 
 namespace thalweg::channel {
 
 std::vector<double> longest_upstream_lengths(const terrain::FlowGraph& graph) {
     std::vector<double> longest(graph.size(), 0);
-    for (const Index node : graph.order | std::views::reverse) {
+    terrain::from_leaves_down(graph, [&](Index node) {
         const Index receiver = graph.receiver[node];
-        if (receiver != none) longest[receiver] = std::max(longest[receiver], longest[node] + graph.length[node]);
-    }
+        longest[receiver] = std::max(longest[receiver], longest[node] + graph.length[node]);
+    });
     return longest;
 }
 

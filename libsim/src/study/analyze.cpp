@@ -162,6 +162,7 @@ NamedRaster read_dem(const std::filesystem::path& path, const io::ReadOptions& o
 std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const std::filesystem::path& folder,
                     const Messages& messages) {
     messages.progress("routing flow and measuring");
+    std::future<HeightSurvey> surveyed = std::async(std::launch::async, [&] { return survey_heights(dem.raster); });
     RasterMeasurement m = measure_raster(dem.raster, options, [&](const RoutedTerrain& terrain) {
         return std::async(std::launch::async, [&dem, &folder, layers = routed_layers(terrain)] {
             write_routed(dem.raster, layers, folder);
@@ -184,7 +185,7 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
     summary["routing"] = routing_name(options.routing);
     summary["slope_area"]["segment_drop_m"] = m.segment_drop_m;
     summary["slope_area"]["vertical_quantum_m"] = m.vertical_quantum_m;
-    const HeightSurvey survey = survey_heights(dem.raster);
+    const HeightSurvey survey = surveyed.get();
     const std::vector<std::string> hints = survey_hints(survey, dem.raster, m.vertical_quantum_m);
     summary["ingest"] = ingest_json(dem, m, survey, hints);
     explain_null("ingest", summary["ingest"],
@@ -201,8 +202,9 @@ std::string analyze(const NamedRaster& dem, const MeasureOptions& options, const
                      "no cell has all eight neighbours, or the surface is level where they are", notes);
     }
     summary["notes"] = notes;
-    write_orders(dem.raster, m.statistics, folder);
+    std::future<void> orders = std::async(std::launch::async, [&] { write_orders(dem.raster, m.statistics, folder); });
     write_tables(dem.raster, m.statistics, folder);
+    orders.get();
     std::string text = text_of(summary);
     write_text(folder / "summary.json", text);
     return text;

@@ -13,12 +13,25 @@
 namespace thalweg::study {
 namespace {
 
-terrain::GraphAndArea carved_graph(const Raster& raster, std::span<const Boundary> boundary,
-                                   ConditioningReport& report) {
+struct Carved {
+    terrain::GraphAndArea routed;
+    std::vector<double> filled_m;  ///< where the raster is to be filled
+};
+
+Carved carved_graph(const Raster& raster, std::span<const Boundary> boundary, const MeasureOptions& options,
+                    ConditioningReport& report) {
+    Carved carved;
     FlowDirections directions = terrain::route(raster.grid, raster.values, boundary);
     report.flat_cells = terrain::resolve_flats(raster.grid, raster.values, boundary, directions);
-    report.pits = terrain::drain_lakes(raster.grid, raster.values, boundary, directions);
-    return terrain::graph_and_area(raster.grid, raster.values, std::move(directions));
+    if (options.conditioning == Conditioning::fill) {
+        terrain::DrainedAndFilled d = terrain::drain_and_fill(raster.grid, raster.values, boundary, directions);
+        report.pits = d.lakes;
+        carved.filled_m = std::move(d.filled_m);
+    } else {
+        report.pits = terrain::drain_lakes(raster.grid, raster.values, boundary, directions);
+    }
+    carved.routed = terrain::graph_and_area(raster.grid, raster.values, std::move(directions));
+    return carved;
 }
 
 /// Where channels may run. Rules that are still to be decided on the conditioned terrain leave everything open.
@@ -78,12 +91,13 @@ std::vector<T> at(std::span<const Index> nodes, const Values& values) {
 CarvedRivers carved_rivers(const Raster& raster, std::span<const Boundary> boundary, const MeasureOptions& options,
                            ConditioningReport& report) {
     RoutedTerrain whole;
-    terrain::GraphAndArea carved = carved_graph(raster, boundary, report);
-    whole.graph = std::move(carved.graph);
-    whole.drainage_area_m2 = std::move(carved.drainage_area_m2);
+    Carved carved = carved_graph(raster, boundary, options, report);
+    whole.graph = std::move(carved.routed.graph);
+    whole.drainage_area_m2 = std::move(carved.routed.drainage_area_m2);
     whole.cell_area_m2 = CellAreas(raster.grid);
     whole.complete = terrain::complete_catchments(raster.grid, whole.graph, boundary);
     CarvedRivers rivers;
+    rivers.filled_m = std::move(carved.filled_m);
     rivers.node = with_receivers(whole.graph, possible_channels(whole, options));
     rivers.terrain.cell_area_m2 = at<double>(rivers.node, whole.cell_area_m2);
     rivers.terrain.elevation_m = at<double>(rivers.node, terrain::carve(whole.graph, raster.values));

@@ -12,8 +12,9 @@ namespace thalweg::study {
 /// kept on which channels may run, and the ones that these flow to: about a hundredth of a DEM, which is what lets the
 /// rest of the measuring do without a second whole terrain in memory.
 struct CarvedRivers {
-    RoutedTerrain terrain;    ///< its nodes are places in `node`
-    std::vector<Index> node;  ///< of the raster, ascending
+    RoutedTerrain terrain;         ///< its nodes are places in `node`
+    std::vector<Index> node;       ///< of the raster, ascending
+    std::vector<double> filled_m;  ///< where the raster is to be filled: its surface then, found with the same lakes
 };
 
 /// Adds pits and flats to the report.

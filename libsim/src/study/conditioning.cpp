@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "thalweg/core/error.hpp"
 #include "thalweg/terrain/breach.hpp"
 #include "thalweg/terrain/flats.hpp"
@@ -15,10 +17,11 @@ namespace thalweg::study {
 namespace {
 
 std::vector<double> surface_of(const Raster& raster, const std::vector<Boundary>& boundary,
-                               const MeasureOptions& options) {
+                               const MeasureOptions& options, std::vector<double> filled_m) {
     switch (options.conditioning) {
         case Conditioning::fill:
-            return terrain::fill(raster.grid, raster.values, boundary);
+            if (filled_m.empty()) return terrain::fill(raster.grid, raster.values, boundary);
+            return filled_m;
         case Conditioning::breach: {
             const auto cut = terrain::breach(raster.grid, raster.values, boundary, options.breach_limits);
             return terrain::fill(raster.grid, cut, boundary);
@@ -60,9 +63,10 @@ void keep_water(const Raster& raster, const Endorheic& wanted, std::vector<Bound
 
 }  // namespace
 
-Conditioned conditioned(const Raster& raster, const std::vector<Boundary>& boundary, const MeasureOptions& options) {
+Conditioned conditioned(const Raster& raster, const std::vector<Boundary>& boundary, const MeasureOptions& options,
+                        std::vector<double> filled_m) {
     Conditioned c;
-    c.surface_m = surface_of(raster, boundary, options);
+    c.surface_m = surface_of(raster, boundary, options, std::move(filled_m));
     c.directions = terrain::route(raster.grid, c.surface_m, boundary);
     c.flat_cells = terrain::resolve_flats(raster.grid, c.surface_m, boundary, c.directions);
     if (options.conditioning == Conditioning::carve) {

@@ -13,7 +13,9 @@ struct Conditioned {
     FlowDirections directions;
     Index flat_cells = 0;  ///< that needed a direction by the flat rule
 };
-Conditioned conditioned(const Raster&, const std::vector<Boundary>&, const MeasureOptions&);
+/// `filled_m`: the raster filled, where that is asked for and known already.
+Conditioned conditioned(const Raster&, const std::vector<Boundary>&, const MeasureOptions&,
+                        std::vector<double> filled_m = {});
 
 /// Where water may leave: the edge of the data, or the one outlet of a catchment; and the lowest cells of the
 /// depressions that keep theirs, which are added to `kept`. Throws Error where a cell of the options lies in no

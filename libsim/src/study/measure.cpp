@@ -334,9 +334,9 @@ RasterMeasurement measure_raster(const Raster& raster, const MeasureOptions& opt
     RasterMeasurement m;
     const auto boundary = boundary_of(raster, options, m.conditioning.endorheic_basins);
     m.terrain.cell_area_m2 = CellAreas(raster.grid);
-    const CarvedRivers rivers = carved_rivers(raster, boundary, options, m.conditioning);
+    CarvedRivers rivers = carved_rivers(raster, boundary, options, m.conditioning);
 
-    Conditioned c = conditioned(raster, boundary, options);
+    Conditioned c = conditioned(raster, boundary, options, std::move(rivers.filled_m));
     m.conditioning.flat_cells = c.flat_cells;
     std::vector<double> surface = std::move(c.surface_m);
     terrain::GraphAndArea routed = terrain::graph_and_area(raster.grid, surface, std::move(c.directions));

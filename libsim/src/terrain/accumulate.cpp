@@ -2,57 +2,11 @@
 #include "thalweg/terrain/accumulate.hpp"
 
 #include <algorithm>
-#include <ranges>
 
-#include "terrain/blocks.hpp"
 #include "terrain/check_sizes.hpp"
+#include "terrain/sweeps.hpp"
 
 namespace thalweg::terrain {
-namespace {
-
-/// Sweeps jump about in memory, but the list says where they will be: this many nodes ahead are asked for early.
-constexpr Index ahead = 24;
-
-/// Calls give(node) for the nodes order[begin, end) that have a receiver, the last first. Those whose receiver lies
-/// outside of the block are only noted.
-template <class Give>
-void part_down(const FlowGraph& graph, Index begin, Index end, Index first, Index size, const Give& give,
-               std::vector<Index>& crossing) {
-    for (Index at = end; at-- > begin;) {
-        if (at >= begin + ahead) graph.receiver.fetch(graph.order[at - ahead]);
-        const Index node = graph.order[at];
-        const Index receiver = graph.receiver[node];
-        if (receiver - first < size) {
-            give(node);
-        } else if (receiver != none) {
-            crossing.push_back(node);
-        }
-    }
-}
-
-/// Calls give(node), which changes the receiver alone, for every node that has one: after all that flow to the node,
-/// and for each receiver in a fixed order. By blocks where the order's parts are known.
-template <class Give>
-void from_leaves_down(const FlowGraph& graph, const Give& give) {
-    const auto& layers = graph.layers;
-    const Blocks blocks(graph.size());
-    std::vector<Index> all;
-    if (layers.part.size() != blocks.count() + 2) {
-        part_down(graph, 0, static_cast<Index>(graph.order.size()), 0, graph.size(), give, all);
-        return;
-    }
-    std::vector<std::vector<Index>> crossing(blocks.count());
-    blocks.for_each([&](Index block) {
-        part_down(graph, layers.begin[layers.part[block + 1]], layers.begin[layers.part[block + 2]],
-                  blocks.first(block), blocks.last(block) - blocks.first(block), give, crossing[block]);
-    });
-    for (const std::vector<Index>& nodes : crossing) {
-        for (const Index node : nodes) give(node);
-    }
-    part_down(graph, 0, layers.begin[layers.part[1]], 0, graph.size(), give, all);
-}
-
-}  // namespace
 
 std::vector<double> accumulate(const FlowGraph& graph, std::span<const double> amount) {
     check_sizes(graph.size(), amount.size(), amount.size());
@@ -88,10 +42,10 @@ std::vector<double> carve(const FlowGraph& graph, std::span<const double> elevat
 std::vector<double> largest_upstream(const FlowGraph& graph, std::span<const double> values) {
     check_sizes(graph.size(), values.size(), values.size());
     std::vector<double> largest(values.begin(), values.end());
-    for (const Index node : std::views::reverse(graph.order)) {
+    from_leaves_down(graph, [&](Index node) {
         const Index receiver = graph.receiver[node];
-        if (receiver != none) largest[receiver] = std::max(largest[receiver], largest[node]);
-    }
+        largest[receiver] = std::max(largest[receiver], largest[node]);
+    });
     return largest;
 }
 

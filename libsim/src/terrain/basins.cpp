@@ -11,17 +11,30 @@
 #include <tuple>
 
 #include "terrain/check_sizes.hpp"
+#include "terrain/sweeps.hpp"
 #include "thalweg/core/error.hpp"
+#include "thalweg/core/parallel.hpp"
 
 namespace thalweg::terrain {
 namespace {
 
+/// The only outlet that more than half of the nodes with data can reach (majority vote of Boyer and Moore).
+Index most_likely_outlet(std::span<const Index> outlet) {
+    Index candidate = none;
+    std::size_t lead = 0;
+    for (const Index reached : outlet) {
+        if (reached == none) continue;
+        if (lead == 0) candidate = reached;
+        reached == candidate ? ++lead : --lead;
+    }
+    return candidate;
+}
+
 /// True if at least 99 % of the nodes with data reach the same outlet.
 bool is_one_catchment(const FlowGraph& graph, std::span<const Index> outlet) {
-    std::vector<Index> reached(graph.size(), 0);
-    for (const Index node : graph.order) ++reached[outlet[node]];
-    const Index most = reached.empty() ? 0 : *std::max_element(reached.begin(), reached.end());
-    return std::uint64_t{most} * 100 >= std::uint64_t{graph.order.size()} * 99;
+    if (graph.order.empty()) return true;
+    const auto most = static_cast<std::uint64_t>(std::ranges::count(outlet, most_likely_outlet(outlet)));
+    return most * 100 >= std::uint64_t{graph.order.size()} * 99;
 }
 
 /// Rows and columns between two cells, whichever is more.
@@ -56,10 +69,10 @@ void sort_largest_first(std::vector<Basin>& basins) {
 
 std::vector<Index> outlet_of(const FlowGraph& graph) {
     std::vector<Index> outlet(graph.size(), none);
-    for (const Index node : graph.order) {
+    from_outlets_up(graph, [&](Index node) {
         const Index receiver = graph.receiver[node];
         outlet[node] = receiver == none ? node : outlet[receiver];
-    }
+    });
     return outlet;
 }
 
@@ -67,16 +80,23 @@ std::vector<std::uint8_t> complete_catchments(const Grid& grid, const FlowGraph&
                                               std::span<const Boundary> boundary) {
     check_sizes(grid.size(), graph.size(), boundary.size());
     constexpr Index excused = 2;
-    std::vector<std::uint8_t> complete(graph.size(), 0);
     const std::vector<Index> outlet = outlet_of(graph);
     const bool one_catchment = is_one_catchment(graph, outlet);
-    for (const Index node : graph.order) {
-        complete[node] =
-            one_catchment || boundary[node] == Boundary::interior || cells_apart(grid, node, outlet[node]) <= excused;
-    }
-    if (one_catchment) return complete;
-    for (const Index node : std::views::reverse(graph.order)) {
-        if (!complete[node] && graph.receiver[node] != none) complete[graph.receiver[node]] = 0;
+    const auto is_whole = [&](Index node) {
+        return one_catchment || boundary[node] == Boundary::interior ||
+               cells_apart(grid, node, outlet[node]) <= excused;
+    };
+    std::vector<std::uint8_t> complete(graph.size());
+    parallel_for(0, graph.size(), [&](Index first, Index last) {
+        for (Index node = first; node < last; ++node) complete[node] = outlet[node] != none && is_whole(node);
+    });
+    // What an incomplete node flows to is incomplete too, down to one that is: from there on that one's own turn does
+    // it.
+    for (Index node = 0; node < graph.size(); ++node) {
+        if (complete[node]) continue;
+        for (Index below = graph.receiver[node]; below != none && complete[below]; below = graph.receiver[below]) {
+            complete[below] = 0;
+        }
     }
     return complete;
 }
@@ -100,15 +120,15 @@ std::vector<Basin> basins(const FlowGraph& graph, std::span<const double> draina
 std::vector<Index> basin_labels(const FlowGraph& graph, std::span<const Basin> basins) {
     std::vector<Index> label(graph.size(), none);
     for (Index number = 0; number < basins.size(); ++number) label.at(basins[number].outlet) = number;
-    for (const Index node : graph.order) {
+    from_outlets_up(graph, [&](Index node) {
         const Index receiver = graph.receiver[node];
-        if (receiver == none || label[receiver] == none) continue;
+        if (receiver == none || label[receiver] == none) return;
         if (label[node] != none) {
             throw Error(fmt::format("basins may not overlap, but the one with outlet {} lies in that with outlet {}",
                                     node, basins[label[receiver]].outlet));
         }
         label[node] = label[receiver];
-    }
+    });
     return label;
 }
 

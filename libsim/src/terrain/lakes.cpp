@@ -86,13 +86,9 @@ std::vector<double> water_levels(const SpillTree& spill) {
     return level;
 }
 
-template <Topology T>
-std::vector<double> filled(const Terrain<T>& terrain) {
-    check_sizes(terrain.topology.size(), terrain.elevation_m.size(), terrain.boundary.size());
-    FlowDirections directions = route(terrain.topology, terrain.elevation_m, terrain.boundary);
-    LakeBuffers buffers;
-    const Lakes lakes = find_lakes(terrain, directions, buffers);
-    std::vector<double> surface(terrain.elevation_m.begin(), terrain.elevation_m.end());
+/// The ground, under water up to its level.
+std::vector<double> water_surface(std::span<const double> elevation_m, const Lakes& lakes) {
+    std::vector<double> surface(elevation_m.begin(), elevation_m.end());
     const std::vector<double> level = water_levels(lakes.spill);
     const auto some = [&](Index first, Index last) {
         for (Index basin = first; basin < last; ++basin) {
@@ -101,6 +97,14 @@ std::vector<double> filled(const Terrain<T>& terrain) {
     };
     parallel_for(0, lakes.basins.count(), some, 128);
     return surface;
+}
+
+template <Topology T>
+std::vector<double> filled(const Terrain<T>& terrain) {
+    check_sizes(terrain.topology.size(), terrain.elevation_m.size(), terrain.boundary.size());
+    FlowDirections directions = route(terrain.topology, terrain.elevation_m, terrain.boundary);
+    LakeBuffers buffers;
+    return water_surface(terrain.elevation_m, find_lakes(terrain, directions, buffers));
 }
 
 /// Turns round the path from `node` down to its pit, so that `node` flows by `out` and the pit towards `node`.
@@ -124,16 +128,17 @@ Slot slot_towards(const T& topology, Index node, Index target) {
     return found;
 }
 
+/// Returns the lakes, too, good as long as the buffers are.
 template <Topology T>
-Index drained(const Terrain<T>& terrain, FlowDirections& directions, LakeBuffers& buffers) {
+Lakes drained(const Terrain<T>& terrain, FlowDirections& directions, LakeBuffers& buffers) {
     check_sizes(terrain.topology.size(), terrain.elevation_m.size(), terrain.boundary.size());
     check_sizes(terrain.topology.size(), directions.size(), directions.size());
-    const Lakes lakes = find_lakes(terrain, directions, buffers);
+    Lakes lakes = find_lakes(terrain, directions, buffers);
     for (Index basin = 1; basin < lakes.basins.count(); ++basin) {
         const Pass& out = lakes.spill.way_out[basin];
         reverse_path(terrain.topology, out.node, slot_towards(terrain.topology, out.node, out.other_node), directions);
     }
-    return lakes.spill.lakes;
+    return lakes;
 }
 
 }  // namespace
@@ -148,12 +153,12 @@ std::vector<double> fill(const Mesh& mesh, std::span<const double> elevation_m, 
 
 Index drain_lakes(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary,
                   FlowDirections& directions, LakeBuffers& buffers) {
-    return drained(Terrain<Grid>{grid, elevation_m, boundary}, directions, buffers);
+    return drained(Terrain<Grid>{grid, elevation_m, boundary}, directions, buffers).spill.lakes;
 }
 
 Index drain_lakes(const Mesh& mesh, std::span<const double> elevation_m, std::span<const Boundary> boundary,
                   FlowDirections& directions, LakeBuffers& buffers) {
-    return drained(Terrain<Mesh>{mesh, elevation_m, boundary}, directions, buffers);
+    return drained(Terrain<Mesh>{mesh, elevation_m, boundary}, directions, buffers).spill.lakes;
 }
 
 Index drain_lakes(const Grid& grid, std::span<const double> elevation_m, std::span<const Boundary> boundary,
@@ -166,6 +171,13 @@ Index drain_lakes(const Mesh& mesh, std::span<const double> elevation_m, std::sp
                   FlowDirections& directions) {
     LakeBuffers buffers;
     return drain_lakes(mesh, elevation_m, boundary, directions, buffers);
+}
+
+DrainedAndFilled drain_and_fill(const Grid& grid, std::span<const double> elevation_m,
+                                std::span<const Boundary> boundary, FlowDirections& directions) {
+    LakeBuffers buffers;
+    const Lakes lakes = drained(Terrain<Grid>{grid, elevation_m, boundary}, directions, buffers);
+    return {.lakes = lakes.spill.lakes, .filled_m = water_surface(elevation_m, lakes)};
 }
 
 }  // namespace thalweg::terrain

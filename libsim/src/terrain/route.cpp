@@ -119,12 +119,15 @@ FlowDirections route(const Mesh& mesh, std::span<const double> elevation_m, std:
 std::vector<Boundary> data_edge(const Grid& grid, std::span<const double> elevation_m) {
     check_sizes(grid.size(), elevation_m.size(), elevation_m.size());
     std::vector<Boundary> boundary(grid.size(), Boundary::interior);
-    for (Index node = 0; node < grid.size(); ++node) {
-        if (std::isnan(elevation_m[node])) continue;
-        int with_data = 0;
-        grid.neighbors(node, [&](Index neighbor, double, Slot) { with_data += !std::isnan(elevation_m[neighbor]); });
-        if (with_data < 8) boundary[node] = Boundary::open;
-    }
+    parallel_for(0, grid.size(), [&](Index first, Index last) {
+        for (Index node = first; node < last; ++node) {
+            if (std::isnan(elevation_m[node])) continue;
+            int with_data = 0;
+            grid.neighbors(node,
+                           [&](Index neighbor, double, Slot) { with_data += !std::isnan(elevation_m[neighbor]); });
+            if (with_data < 8) boundary[node] = Boundary::open;
+        }
+    });
     return boundary;
 }
 

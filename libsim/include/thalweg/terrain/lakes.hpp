@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "thalweg/terrain/route.hpp"
 
@@ -24,5 +25,13 @@ std::vector<double> fill(const Mesh&, std::span<const double> elevation_m, std::
 /// lakes (pits that drained nowhere; a flat counts as one pit).
 Index drain_lakes(const Grid&, std::span<const double> elevation_m, std::span<const Boundary>, FlowDirections&);
 Index drain_lakes(const Mesh&, std::span<const double> elevation_m, std::span<const Boundary>, FlowDirections&);
+
+/// `drain_lakes` and, of the same lakes, the surface that `fill` gives: finding them is what takes most of either.
+struct DrainedAndFilled {
+    Index lakes;
+    std::vector<double> filled_m;
+};
+DrainedAndFilled drain_and_fill(const Grid&, std::span<const double> elevation_m, std::span<const Boundary>,
+                                FlowDirections&);
 
 }  // namespace thalweg::terrain
