@@ -347,6 +347,50 @@ TEST_CASE("the user's coordinate system replaces the file's, and nonsense is ref
     CHECK_THAT(refusal(folder / "a.tif", {.nodata = {}, .crs = "EPSG:4978"}), Contains("neither geographic nor"));
 }
 
+TEST_CASE("what is no coordinate system is answered by its number, or by the zone of the raster's middle", "[raster]") {
+    const TempFolder folder;
+    struct Place {
+        double west, north;
+        const char* zone;
+    };
+    for (const auto& [west, north, zone] :
+         {Place{-84.2, 36.5, "EPSG:32616"}, Place{-83.9, 36.5, "EPSG:32617"}, Place{151.2, -33.8, "EPSG:32756"},
+          Place{5.5, 60.4, "EPSG:32632"}, Place{10, 86, "EPSG:32661"}, Place{10, -86, "EPSG:32761"}}) {
+        make(folder, "a.tif", {.transform = {west, 0.001, 0, north, 0, -0.001}, .crs = "EPSG:4326"});
+        CAPTURE(zone);
+        CHECK_THAT(refusal(folder / "a.tif", {.nodata = {}, .crs = "utm"}), Contains(std::string("(try ") + zone));
+        CHECK_THAT(refusal(folder / "a.tif", {.nodata = {}, .crs = {}, .reproject = "utm"}),
+                   Contains(std::string("try ") + zone));
+        CHECK_THAT(refusal(folder / "a.tif", {.nodata = {}, .crs = {}, .cell_m = 90.0}),
+                   Contains(std::string("--reproject ") + zone));
+    }
+    CHECK_THAT(refusal(folder / "a.tif", {.nodata = {}, .crs = "32610"}), Contains("(try EPSG:32610)"));
+    make(folder, "b.tif", {.transform = {700000, 30, 0, 5100000, 0, -30}, .crs = "EPSG:32632"});
+    CHECK_THAT(refusal(folder / "b.tif", {.nodata = {}, .crs = "utm"}), Contains("(try EPSG:32632)"));
+    make(folder, "c.tif", {.crs = ""});
+    CHECK_THAT(refusal(folder / "c.tif", {.nodata = {}, .crs = "utm"}), Contains("(try EPSG:32611)"));
+}
+
+TEST_CASE("a middle outside of what the coordinate system is made for is said so", "[raster]") {
+    const TempFolder folder;
+    const auto warns = [&](const std::array<double, 6>& transform, const char* crs) {
+        return warned(io::read_raster(make(folder, "a.tif", {.transform = transform, .crs = crs})),
+                      "for which that is made");
+    };
+    const auto degrees = [](double west, double north) {
+        return std::array<double, 6>{west, 0.001, 0, north, 0, -0.001};
+    };
+    CHECK(warns(degrees(7, 46), "EPSG:4269"));  // NAD83 in the Alps
+    CHECK_FALSE(warns(degrees(-84, 36), "EPSG:4269"));
+    CHECK_FALSE(warns(degrees(173, 53), "EPSG:4269"));  // the Aleutians, beyond the antimeridian
+    CHECK_FALSE(warns(degrees(-170, 53), "EPSG:4269"));
+    CHECK_FALSE(warns(degrees(179.9, -89.9), "EPSG:4326"));
+    CHECK(warns({2600000, 30, 0, 1600000, 0, -30}, "EPSG:2056"));  // Swiss system in the Tyrol and beyond
+    CHECK_FALSE(warns({2600000, 30, 0, 1200000, 0, -30}, "EPSG:2056"));
+    CHECK_FALSE(warns({200000, 30, 0, 5000000, 0, -30}, "EPSG:32611"));  // less than a degree beyond its zone
+    CHECK(warns({500000, 30, 0, -2000000, 0, -30}, "EPSG:32611"));       // the southern hemisphere has its own
+}
+
 TEST_CASE("a map whose lengths are not the ground's is said so", "[raster]") {
     const TempFolder folder;
     // Web Mercator at 60 degrees north doubles every length.

@@ -29,7 +29,7 @@ const std::vector<RealDem> real_dems{
     {"big_tujunga_srtm_30m.tif", 643, 1197, 0, 315, 2295, false, "EPSG:32611", {}},
     {"shillong_plateau_50m.bil", 1056, 1800, 8.63, 2, 1964, false, "EPSG:32646", {}},
     {"mandakini_srtm_89m.bil", 648, 587, 45.24, 644, 6741, false, "EPSG:32644", {}},
-    {"baspa_nasadem_30m.tif", 2287, 3129, 42.20, 1615, 6422, false, "EPSG:32646", {"longer than on the ground"}},
+    {"baspa_nasadem_30m.tif", 2287, 3129, 42.20, 1615, 6422, false, "EPSG:32646", {"for which that is made", "longer than on the ground"}},
     {"n42e001.hgt", 1201, 1201, 0.53, 349, 3100, true, "EPSG:4326", {"holes"}},
     {"n55w003.hgt", 1201, 1201, 0, -22, 816, true, "EPSG:4326", {"--nodata 0", "118 cells"}},
     {"n48w125.hgt.zip", 3601, 3601, 50.00, -13, 1095, true, "EPSG:4326", {"--nodata 0", "1208 cells", "holes"}},

@@ -15,6 +15,7 @@
 
 #include "io/crs_text.hpp"
 #include "io/gdal_guard.hpp"
+#include "io/utm_zone.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/io/geodesy.hpp"
 
@@ -48,11 +49,13 @@ Affine upright_transform(GDALDataset& dataset, const std::string& name) {
     return t;
 }
 
-std::optional<OGRSpatialReference> crs_from_text(const std::string& text) {
+/// `for_the_place` is named where the text cannot be understood.
+std::optional<OGRSpatialReference> crs_from_text(const std::string& text, const std::string& for_the_place) {
     OGRSpatialReference crs;
     const char* const options[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
     if (crs.SetFromUserInput(text.c_str(), options) != OGRERR_NONE) {
-        throw Error(fmt::format("\"{}\" is no coordinate system that can be understood (try EPSG:32611)", text));
+        throw Error(fmt::format("\"{}\" is no coordinate system that can be understood ({})", text,
+                                try_instead(text, for_the_place)));
     }
     return crs;
 }
@@ -191,8 +194,43 @@ double map_scale(const Placement& p, Index rows, Index cols, const OGRSpatialRef
     return ground > 0 ? p.cell_width * crs.GetLinearUnits() / ground : 0;
 }
 
-void warn_of_stretched_map(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs,
-                           const std::string& name, ReadResult& result) {
+/// Longitude and latitude of the raster's middle, degrees; nothing where the system does not tell.
+std::optional<Point> middle_in_degrees(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs) {
+    const GdalGuard gdal;
+    OGRSpatialReference own(crs);
+    own.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::unique_ptr<OGRSpatialReference> sphere(own.CloneGeogCS());
+    if (!sphere) return std::nullopt;
+    sphere->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    const std::unique_ptr<OGRCoordinateTransformation> change(OGRCreateCoordinateTransformation(&own, sphere.get()));
+    Point middle = p.center(rows / 2, cols / 2);
+    if (!change || !change->Transform(1, &middle.x, &middle.y) || !std::isfinite(middle.x)) return std::nullopt;
+    return middle;
+}
+
+/// Where the system is made for, as its authority says, lies elsewhere. Neighbours use it too: a degree is allowed.
+void warn_of_foreign_area(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs,
+                          const std::string& name, ReadResult& result) {
+    const GdalGuard gdal;
+    constexpr double margin_deg = 1;
+    double west = 0, south = 0, east = 0, north = 0;
+    const char* area = nullptr;
+    const std::optional<Point> middle = middle_in_degrees(p, rows, cols, crs);
+    OGRSpatialReference known;  // a file's own words seldom tell of the area
+    if (!middle || known.SetFromUserInput(epsg_or_name(crs).c_str()) != OGRERR_NONE) return;
+    if (!known.GetAreaOfUse(&west, &south, &east, &north, &area) || south < -90) return;
+    const double wide = std::remainder(east - west, 360.0) + (std::remainder(east - west, 360.0) <= 0 ? 360 : 0);
+    const double beyond = std::abs(std::remainder(middle->x - (west + wide / 2), 360.0)) - wide / 2;
+    if (beyond <= margin_deg && middle->y >= south - margin_deg && middle->y <= north + margin_deg) return;
+    result.warnings.push_back(
+        fmt::format("the middle of {} lies at {:.2f} degrees east, {:.2f} north in its coordinate system ({}), outside "
+                    "of {:g} to {:g} east and {:g} to {:g} north, for which that is made: if it is the wrong one, give "
+                    "the right one with --crs",
+                    name, middle->x, middle->y, epsg_or_name(crs), west, east, south, north));
+}
+
+void warn_of_unfit_map(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs,
+                       const std::string& name, ReadResult& result) {
     const double scale = map_scale(p, rows, cols, crs, name);
     if (std::isinf(scale)) {
         const Point middle = p.center(rows / 2, cols / 2);
@@ -203,6 +241,7 @@ void warn_of_stretched_map(const Placement& p, Index rows, Index cols, const OGR
                         name, middle.x, middle.y, epsg_or_name(crs)));
         return;
     }
+    warn_of_foreign_area(p, rows, cols, crs, name, result);
     if (scale == 0 || std::abs(scale - 1) < 0.01) return;
     result.warnings.push_back(fmt::format(
         "lengths on the map of {} are {:.1f} % {} than on the ground: lengths, areas and slopes are the map's "
@@ -282,11 +321,12 @@ void place_with_crs(OGRSpatialReference crs, Index rows, Index cols, const std::
     if (p.geographic) {
         result.raster.grid = degrees_grid(p, rows, cols, crs, name);
         warn_of_seam(p, cols, name, result);
+        warn_of_foreign_area(p, rows, cols, crs, name, result);
         return;
     }
     measure_plane(result.raster, rows, cols, crs.GetLinearUnits());
     warn_of_degrees(p, rows, cols, result.crs_name, name, result);
-    warn_of_stretched_map(p, rows, cols, crs, name, result);
+    warn_of_unfit_map(p, rows, cols, crs, name, result);
 }
 
 }  // namespace
@@ -303,7 +343,9 @@ RowOrder place_raster(GDALDataset& dataset, const std::string& name, const std::
     p.cell_width = t[1];
     p.cell_height = std::abs(t[5]);
     const std::optional<OGRSpatialReference> own = stated_crs(dataset);
-    const std::optional<OGRSpatialReference> crs = crs_override.empty() ? own : crs_from_text(crs_override);
+    if (own) p.crs_wkt = wkt_of(*own);
+    const std::optional<OGRSpatialReference> crs =
+        crs_override.empty() ? own : crs_from_text(crs_override, system_for(p, rows, cols));
     // A horizontal system given by the user leaves the file's own word on heights standing.
     const std::optional<OGRSpatialReference>& vertical = own && own->IsCompound() ? own : crs;
     find_vertical_unit(dataset, vertical ? &*vertical : nullptr, name, result);

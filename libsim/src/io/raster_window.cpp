@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/raster_window.hpp"
 
+#include "io/utm_zone.hpp"
+
 #include <cpl_string.h>
 #include <cpl_vsi.h>
 #include <fmt/format.h>
@@ -68,10 +70,12 @@ void add_bands(CPLStringList& arguments, GDALDataset& dataset, int heights) {
     }
 }
 
-OGRSpatialReference system_of(const std::string& text) {
+/// `for_the_place` is named where the text cannot be understood.
+OGRSpatialReference system_of(const std::string& text, const std::string& for_the_place) {
     OGRSpatialReference system;
     if (system.SetFromUserInput(text.c_str()) != OGRERR_NONE) {
-        throw Error(fmt::format("'{}' is no coordinate system that GDAL knows: try EPSG:32611 or the like", text));
+        throw Error(fmt::format("'{}' is no coordinate system that GDAL knows: {} or the like", text,
+                                try_instead(text, for_the_place)));
     }
     return system;
 }
@@ -142,13 +146,15 @@ CPLStringList warp_arguments(const Raster& raster, GDALDataset& source, const st
     if (target.empty()) {
         throw Error(fmt::format("{} has no coordinate system to start from: give it with --crs", name));
     }
-    const OGRSpatialReference system = system_of(target);
+    const std::string for_the_place = system_for(raster.placement, raster.grid.rows, raster.grid.cols);
+    const OGRSpatialReference system = system_of(target, for_the_place);
     add({"-of", "MEM", "-t_srs", target});
     const double wide = std::max(mean_step(raster.grid.east_west), mean_step(raster.grid.north_south));
     if (options.cell_m) {
         if (!system.IsProjected()) {
-            throw Error(
-                "cells in metres need a projected coordinate system: give one to reproject to, e.g. EPSG:32611");
+            throw Error(fmt::format(
+                "cells in metres need a projected coordinate system: give one to reproject to, e.g. --reproject {}",
+                for_the_place));
         }
         check_cell(source, system, name, *options.cell_m);
         const std::string step = fmt::format("{:.17g}", *options.cell_m / system.GetLinearUnits());
