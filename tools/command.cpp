@@ -2,6 +2,7 @@
 #include "command.hpp"
 
 #include "interrupt.hpp"
+#include "phase_lines.hpp"
 
 #include <fmt/format.h>
 
@@ -11,6 +12,7 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "thalweg/core/error.hpp"
 #include "thalweg/core/parallel.hpp"
@@ -124,11 +126,13 @@ study::Experiment experiment(const ExperimentOptions& options) {
 
 namespace {
 
-/// One status line that rewrites itself on a terminal (elsewhere nothing), and reports and warnings kept back until the
-/// work is done: a command that fails says exactly one line.
+/// One status line that rewrites itself on a terminal (elsewhere a line per phase of work that lasts), and reports and
+/// warnings kept back until the work is done: a command that fails says of them exactly one line, the error.
 class Console {
   public:
-    explicit Console(bool quiet) : quiet_(quiet), shows_status_(!quiet && ::isatty(STDERR_FILENO) == 1) {}
+    explicit Console(bool quiet) : quiet_(quiet), shows_status_(!quiet && ::isatty(STDERR_FILENO) == 1) {
+        if (!quiet_ && !shows_status_) phases_.emplace();
+    }
     ~Console() { clear(); }
 
     study::Messages messages() {
@@ -139,6 +143,7 @@ class Console {
 
     void finish() {
         clear();
+        phases_.reset();
         for (const std::string& text : reports_) {
             if (!quiet_) std::cerr << "thalweg: " << text << '\n';
         }
@@ -148,7 +153,8 @@ class Console {
   private:
     static constexpr const char* start_of_line = "\r\033[K";
 
-    void status(const std::string& text) const {
+    void status(const std::string& text) {
+        if (phases_) phases_->status(text);
         if (shows_status_) std::cerr << start_of_line << "thalweg: " << text << std::flush;
     }
     void clear() const {
@@ -157,6 +163,7 @@ class Console {
 
     bool quiet_;
     bool shows_status_;
+    std::optional<PhaseLines> phases_;
     std::vector<std::string> reports_, warnings_;
 };
 

@@ -299,7 +299,7 @@ class CommandLine(unittest.TestCase):
         before = sorted(self.here.rglob("*"))
         for sign in (signal.SIGINT, signal.SIGTERM):
             process = subprocess.Popen([THALWEG, "simulate", self.experiment, "--out", self.here / "out", "--set",
-                                        "time.max_steps=1000000", "--set", "time.convergence=0"],
+                                        "time.max_steps=1000000", "--set", "time.convergence=0", "--quiet"],
                                        stderr=subprocess.PIPE, text=True)
             self.wait_for_a_partial_folder()
             process.send_signal(sign)
@@ -310,13 +310,25 @@ class CommandLine(unittest.TestCase):
 
     def test_a_drawing_that_is_interrupted_leaves_neither_debris_nor_python(self):
         before = sorted(self.here.rglob("*"))
-        process = subprocess.Popen([THALWEG, "analyze", DEM, "--out", self.here / "out"], stderr=subprocess.PIPE, text=True)
+        process = subprocess.Popen([THALWEG, "analyze", DEM, "--out", self.here / "out", "--quiet"],
+                                   stderr=subprocess.PIPE, text=True)
         self.wait_for_a_partial_folder("figures")  # made by Python before the first of them is drawn
         process.send_signal(signal.SIGINT)
         _, said = process.communicate(timeout=60)  # returns only when Python has let go of the pipe, too
         self.assertEqual(process.returncode, 128 + signal.SIGINT, said)
         self.assertEqual(len(said.splitlines()), 1, said)
         self.assertEqual(sorted(self.here.rglob("*")), before)
+
+    def test_a_log_is_told_of_each_phase_of_long_work_on_a_line_of_its_own(self):
+        endless = [THALWEG, "simulate", self.experiment, "--out", self.here / "out", "--set", "time.max_steps=100000000",
+                   "--set", "time.convergence=0", "--no-figures"]
+        process = subprocess.Popen(endless, stderr=subprocess.PIPE, text=True)
+        told = process.stderr.readline()  # waits for it
+        process.send_signal(signal.SIGTERM)
+        _, rest = process.communicate(timeout=60)
+        self.assertRegex(told, r"^thalweg: (simulating|step|making the mesh).*\n$")
+        self.assertNotIn("\r", told + rest)
+        self.assertRegex(rest.splitlines()[-1], "^thalweg: error: stopped")
 
     def wait_for_a_partial_folder(self, holding=""):
         until = time.monotonic() + 120
