@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/channel/valleys.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 #include "support/flow_trees.hpp"
+#include "thalweg/core/random.hpp"
 #include "thalweg/core/raster.hpp"
 #include "thalweg/terrain/accumulate.hpp"
 #include "thalweg/terrain/route.hpp"
@@ -52,7 +54,7 @@ struct Valley {
 TEST_CASE("The sides of a drawn valley have their slopes, each on its bank") {
     const Valley valley(0.5, 0.25, 1);  // up to the divide: all ridge cells lie beside the channel
     REQUIRE(valley.network.size() == 1);
-    const auto sides = valley_sides(valley.grid, valley.graph, valley.elevation, valley.network);
+    const auto sides = valley_sides(ridge_pieces(valley.grid, valley.graph, valley.elevation, valley.network));
     REQUIRE(sides.size() == 2);
     CHECK(sides[0].bank == Bank::left);  // looking south, that is east
     const auto slope = [](const ValleySide& side) { return side.rise_m / side.run_m; };
@@ -63,6 +65,97 @@ TEST_CASE("The sides of a drawn valley have their slopes, each on its bank") {
     CHECK(angles.count == 2);
     CHECK(angles.mean.value == Approx((a + b) / 2));
     CHECK(angles.delta.value == Approx(std::sqrt(3.0) * (b - a) / std::sqrt(2.0)));
+}
+
+namespace {
+
+double squares_left(const std::vector<RidgePiece>& pieces, double reach) {
+    double xh = 0, xx = 0, hh = 0;
+    for (const RidgePiece& p : pieces) {
+        const double x = std::min(p.run_m, reach);
+        xh += p.length_m * x * p.rise_m;
+        xx += p.length_m * x * x;
+        hh += p.length_m * p.rise_m * p.rise_m;
+    }
+    return hh - xh * xh / xx;
+}
+
+/// Ridges at distances up to 1000 m, of 40 links, that rise by 0.3 up to `reach`, off by up to `scatter`.
+std::vector<RidgePiece> drawn_ridges(std::uint64_t seed, double reach, double scatter) {
+    Random random(seed, 3);
+    std::vector<RidgePiece> pieces;
+    for (Index i = 0; i < 2000; ++i) {
+        const double run = 1000 * random.uniform();
+        pieces.push_back({.link = i % 40,
+                          .bank = i % 80 < 40 ? Bank::left : Bank::right,
+                          .length_m = 1 + random.uniform(),
+                          .rise_m = 0.3 * std::min(run, reach) + scatter * (2 * random.uniform() - 1),
+                          .run_m = run});
+    }
+    return pieces;
+}
+
+}  // namespace
+
+TEST_CASE("Valley sides reach as far as they rise") {
+    for (const double reach : {150.0, 400.0, 700.0, 950.0}) {
+        CHECK(sidewall_reach(drawn_ridges(1, reach, 0)).value == Approx(reach).epsilon(1e-9));
+    }
+    const auto straight = drawn_ridges(2, 1e9, 0);
+    CHECK(sidewall_reach(straight).value == ridge_distance(straight, 0.99));
+    CHECK(ridge_distance(straight, 0.99) == Approx(990).margin(5));
+    CHECK(ridge_distance(straight, 0.5) == Approx(500).margin(40));
+    CHECK(std::isnan(sidewall_reach({}).value));
+    CHECK(std::isnan(sidewall_reach(std::vector<RidgePiece>{{0, Bank::left, 1, -5, 10}}).value));
+    const Estimate one = sidewall_reach(std::vector<RidgePiece>{{0, Bank::left, 1, 5, 10}});
+    CHECK(one.value == 10);
+    CHECK(std::isnan(one.standard_error));
+}
+
+TEST_CASE("No other reach leaves less of the heights of scattered ridges, and its error is its scatter") {
+    constexpr int trials = 60;
+    std::vector<double> found, errors;
+    for (std::uint64_t seed = 1; seed <= trials; ++seed) {
+        const auto pieces = drawn_ridges(seed, 500, 100);
+        const Estimate reach = sidewall_reach(pieces);
+        const double known = ridge_distance(pieces, 0.99);
+        for (double other = 1; other < known; other += 3) {
+            REQUIRE(squares_left(pieces, reach.value) <= squares_left(pieces, other) * (1 + 1e-12));
+        }
+        found.push_back(reach.value);
+        errors.push_back(reach.standard_error);
+    }
+    CHECK(mean(found) == Approx(500).margin(4 * mean(errors) / std::sqrt(trials)));
+    CHECK(mean(errors) == Approx(standard_deviation(found)).epsilon(0.35));
+}
+
+TEST_CASE("On a raster the benches above a valley begin where its sides stop rising") {
+    // A valley that widens downstream from 40 to 340 m on either side: up to 120 m from its floor the sides rise by
+    // 0.5, then by 0.001.
+    constexpr Index rows = 60, cols = 71, middle = 35;
+    const Grid grid = plane_grid(rows, cols, 10, 10);
+    std::vector<double> elevation;
+    std::vector<Boundary> boundary(grid.size(), Boundary::interior);
+    std::vector<std::uint8_t> channel(grid.size(), 0);
+    for (Index row = 0; row < rows; ++row) {
+        for (Index col = 0; col < cols; ++col) {
+            const double away = 10 * std::abs(double(col) - middle);
+            const double side = 0.5 * std::min(away, 120.0) + 0.001 * std::max(away - 120, 0.0);
+            elevation.push_back(away > 40 + 5.0 * row ? std::nan("") : 1e-5 * (rows - row) + side);
+        }
+        channel[row * cols + middle] = 1;
+    }
+    boundary[(rows - 1) * cols + middle] = Boundary::base_level;
+    const auto graph = terrain::flow_graph(grid, elevation, terrain::route(grid, elevation, boundary));
+    const auto area = terrain::accumulate(graph, terrain::cell_areas(grid));
+    const auto network = stream_network(graph, channel, area, elevation);
+    const auto pieces = ridge_pieces(grid, graph, elevation, network);
+    CHECK(ridge_distance(pieces, 1) == Approx(335).margin(10));
+    const double reach = sidewall_reach(pieces).value;
+    CHECK(reach == Approx(120).margin(1));
+    CHECK(sidewall_angles(valley_sides(pieces, reach)).mean.value ==
+          Approx(std::atan(0.5) * 180 / std::numbers::pi).margin(0.1));
+    CHECK(sidewall_angles(valley_sides(pieces)).mean.value < 18);  // benches and all
 }
 
 TEST_CASE("Beyond a source the way goes straight on to the divide") {

@@ -493,6 +493,9 @@ TEST_CASE("Impossible dials are refused by name") {
     refused([](Dials& d) { d.flint.q = 0.6; }, "flint_q");
     refused([](Dials& d) { d.sidewall_angle_deg = 88; }, "sidewall_angle_deg");
     refused([](Dials& d) { d.delta_sidewall_angle_deg = 50; }, "delta_sidewall_angle_deg");
+    for (const double reach : {0.0, -3.0, std::numeric_limits<double>::quiet_NaN()}) {
+        refused([&](Dials& d) { d.sidewall_reach_m = reach; }, "sidewall_reach_m");
+    }
     refused([](Dials& d) { d.lower_bias = 1.5; }, "lower_bias");
     refused([](Dials& d) { d.middle_bias = -1; }, "middle_bias");
 }

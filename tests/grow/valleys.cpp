@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/grow/valleys.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -63,7 +65,7 @@ TEST_CASE("Beyond every source lies its head, and nothing beyond other links") {
 TEST_CASE("Every divide is the ridge of two valley sides, the outline of one, and none lies below its channel") {
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
         const Network network = grown(seed).network;
-        const auto sides = valley_sides(network, elevations(network, {}, 100));
+        const auto sides = channel::valley_sides(ridge_pieces(network, elevations(network, {}, 100)));
         double lines = 0;
         for (const Edge& edge : network.edges) {
             if (edge.kind == EdgeKind::divide) lines += 2 * length_of(network, edge);
@@ -129,9 +131,10 @@ TEST_CASE("Drawn shares of divides have the mean and spread that was asked for")
     }
 }
 
-TEST_CASE("A ditch through a tray has the slopes that its corners say") {
-    // One link along the middle of a long basin, level, with sides of 30° to the east and 45° to the west that reach
-    // the outline at their full height: along the two long sides the slope is the tangent.
+namespace {
+
+/// One link along the middle of a long basin, with head lines to its corners and sides of 100 m to the east and west.
+Network tray() {
     Network network;
     network.vertices = {{0, 0}, {0, 1000}, {100, 0}, {100, 1000}, {-100, 1000}, {-100, 0}};
     network.edges = {{0, 1, EdgeKind::channel}, {0, 2, EdgeKind::head}, {2, 3, EdgeKind::divide},
@@ -143,8 +146,17 @@ TEST_CASE("A ditch through a tray has the slopes that its corners say") {
     network.upper = {1};
     network.polygon_vertices = {0, 1, 4, 5, 1, 0, 2, 3};
     network.polygon_offset = {0, 4, 8};
+    return network;
+}
+
+}  // namespace
+
+TEST_CASE("A ditch through a tray has the slopes that its corners say") {
+    // Level, with sides of 30° to the east and 45° to the west that reach the outline at their full height: along the
+    // two long sides the slope is the tangent.
+    const Network network = tray();
     const double tall = 100 * std::tan(0.7), low = 100 * std::tan(0.3);
-    const auto sides = valley_sides(network, std::vector<double>{0, 0, low, low, tall, tall});
+    const auto sides = channel::valley_sides(ridge_pieces(network, std::vector<double>{0, 0, low, low, tall, tall}));
     REQUIRE(sides.size() == 2);
     CHECK(sides[0].bank == channel::Bank::left);  // looking south, that is east
     CHECK(sides[0].rise_m == Approx(low));
@@ -153,6 +165,57 @@ TEST_CASE("A ditch through a tray has the slopes that its corners say") {
     CHECK(sides[1].ridge_m == Approx(1000));
     const auto angles = channel::sidewall_angles(sides);
     CHECK(angles.mean.value == Approx(0.5 * 180 / 3.14159265358979));
+}
+
+TEST_CASE("Ridges beyond the reach of their valley sides are as high as at it") {
+    Network network = tray();
+    network.magnitude = {1};
+    network.length_m = {1000};
+    network.sidewall_slope = {{0.5, 0.2}};  // west, east
+    const Flint flint{.p = 0.03, .q = -0.6};
+    const auto heights = [&](double reach) {
+        network.sidewall_reach_m = reach;
+        return elevations(network, flint, 7);
+    };
+    const std::vector<double> straight{7, 37, 7 + 20, 37 + 20, 37 + 50, 7 + 50};
+    const std::vector<double> cut{7, 37, 7 + 12, 37 + 12, 37 + 30, 7 + 30};
+    for (std::size_t i = 0; i < 6; ++i) {
+        INFO(i);
+        CHECK(heights(std::numeric_limits<double>::infinity())[i] == Approx(straight[i]));
+        CHECK(heights(100)[i] == Approx(straight[i]));
+        CHECK(heights(60)[i] == Approx(cut[i]));
+    }
+    // Measured up to where they rise, the sides have their own slopes again.
+    const auto pieces = ridge_pieces(network, heights(60));
+    CHECK(channel::ridge_distance(pieces, 0.99) == Approx(100));
+    const double mean_rad = (std::atan(0.5) + std::atan(0.2)) / 2;
+    const auto angles = channel::sidewall_angles(channel::valley_sides(pieces, 60));
+    CHECK(angles.mean.value == Approx(mean_rad * 180 / 3.14159265358979));
+}
+
+TEST_CASE("A reach beyond all ridges changes no grown terrain, a shorter one lowers it and keeps its channels") {
+    Dials dials;
+    const Growth straight = grown(3);
+    const auto high = elevations(straight.network, dials.flint, 0);
+    dials.sidewall_reach_m = 1e6;
+    CHECK(elevations(grown(3, dials).network, dials.flint, 0) == high);
+    dials.sidewall_reach_m = 400;
+    const Network network = grown(3, dials).network;
+    const auto low = elevations(network, dials.flint, 0);
+    const double steepest =
+        std::tan((dials.sidewall_angle_deg + dials.delta_sidewall_angle_deg) * 3.14159265358979 / 180);
+    double highest_channel = 0;
+    for (const Index vertex : network.upper) {
+        CHECK(low[vertex] == high[vertex]);
+        highest_channel = std::max(highest_channel, low[vertex]);
+    }
+    double lowered = 0;
+    for (std::size_t i = 0; i < low.size(); ++i) {
+        CHECK(low[i] <= high[i]);
+        CHECK(low[i] <= highest_channel + 400 * steepest);
+        lowered = std::max(lowered, high[i] - low[i]);
+    }
+    CHECK(lowered > 50);
 }
 
 TEST_CASE("What is measured on a tree rises with the dial that it tells of") {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/study/fit_growth.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -69,6 +70,8 @@ TEST_CASE("A fit of growth writes a basin and dials that read back as they were 
     CHECK(fit["reduced_chi2"].get<double>() > 0);
     CHECK(fit["iterations"] > 2);
     CHECK(fit["converged"] == true);
+    CHECK(dials.sidewall_reach_m == estimate("sidewall_reach_m"));
+    CHECK(dials.sidewall_reach_m <= fit["measures"]["farthest_ridges_m"].get<double>());
     CHECK(dials.divides == grow::Divides::shares);
     CHECK(dials.divide_above.mean == estimate("divide_above"));
     CHECK(dials.divide_across.delta == estimate("delta_divide_across"));
@@ -77,6 +80,39 @@ TEST_CASE("A fit of growth writes a basin and dials that read back as they were 
     CHECK(written.find("[growth]") != std::string::npos);
     CHECK(written.find("[river]") == std::string::npos);  // what grow does not read
     CHECK(site.warnings.empty());                         // all bends of a fitted trunk are kept
+}
+
+TEST_CASE("Terrain grown with the dials of a real catchment is as high and as hollow as that") {
+    const TempFolder folder;
+    fit_growth(jacksboro, {}, folder / "", {});
+    Experiment e = read_experiment(folder / "growth.toml");
+    const GrowthSite site = growth_site(e, {});
+    e.output.resolution = 200;
+    struct Shape {
+        double relief, integral;
+    };
+    const auto shape = [](const Raster& raster) {
+        double low = 1e9, high = -1e9, sum = 0, cells = 0;
+        for (const double z : raster.values) {
+            if (std::isnan(z)) continue;
+            low = std::min(low, z);
+            high = std::max(high, z);
+            sum += z;
+            ++cells;
+        }
+        return Shape{high - low, (sum / cells - low) / (high - low)};
+    };
+    const Shape real = shape(largest_complete_catchment(read_dem(jacksboro, {}, {}).raster, {}).raster);
+    CHECK(real.relief == Approx(692).margin(1));
+    Shape grown{0, 0};
+    constexpr int seeds = 8;
+    for (e.seed = 1; e.seed <= seeds; ++e.seed) {
+        const Shape one = shape(grown_terrain(e, site, {}).elevation);
+        grown.relief += one.relief / seeds;
+        grown.integral += one.integral / seeds;
+    }
+    CHECK(grown.relief == Approx(real.relief).epsilon(0.3));
+    CHECK(grown.integral == Approx(real.integral).margin(0.06));
 }
 
 namespace {

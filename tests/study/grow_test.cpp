@@ -381,6 +381,9 @@ TEST_CASE("What cannot be grown is refused before anything is written") {
     e.growth.dials.sidewall_angle_deg = 88;
     CHECK_THAT(refusal(e), Catch::Contains("sidewall_angle_deg"));
     e = small_growth();
+    e.growth.sidewall_reach_m = -1;
+    CHECK_THAT(refusal(e), Catch::Contains("sidewall_reach_m is -1: it must be above 0"));
+    e = small_growth();
     e.output.base_depth_m = 3;
     CHECK_THAT(refusal(e), Catch::Contains("output.solid"));
     e = small_growth();

@@ -216,6 +216,41 @@ TEST_CASE("Divides drawn where water parts are measured on the terrain's raster 
     CHECK(divides_on_rasters({0.6, 0.55, 0.6})[2] > measured[2] + 0.04);
 }
 
+TEST_CASE("The reach of valley sides that a terrain was grown with is found on its raster") {
+    double sum = 0;
+    constexpr int seeds = 4;
+    for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+        Experiment e;
+        e.seed = seed;
+        e.growth.channel_maintenance_m = 1500;
+        e.growth.dials.delta_sidewall_angle_deg = 0;
+        e.growth.sidewall_reach_m = 500;
+        e.output.resolution = 600;
+        const GrownTerrain t =
+            grown_terrain(e, {.basin = support::square_basin(12000), .crs_wkt = "", .warnings = {}}, {});
+        MeasureOptions options = measure_options(t);
+        options.heads = grown_heads(t);
+        options.channels = ChannelRule::heads;
+        const auto m = growth_measures(t.elevation, measure_raster(t.elevation, options));
+        CHECK(m.farthest_ridges_m > 1000);
+        sum += m.sidewall_reach_m.value / seeds;
+    }
+    // The surface is smooth where the sides have a bend, and water arrives farther down than straight across.
+    CHECK(sum == Approx(500).epsilon(0.3));
+}
+
+TEST_CASE("Dials have the reach of valley sides that was measured, and none where none was") {
+    const grow::Basin basin = support::square_basin(6000);
+    auto measures = grown_measures(basin, drawn_dials(2));
+    CHECK(std::isinf(fit_dials(basin, measures, 1).dials.sidewall_reach_m));
+    measures.sidewall_reach_m = {700, 30, {641, 759}};
+    const DialsFit fit = fit_dials(basin, measures, 1);
+    CHECK(fit.dials.sidewall_reach_m == 700);
+    const auto row = std::ranges::find(fit.table, "sidewall_reach_m", &FittedDial::name);
+    REQUIRE(row != fit.table.end());
+    CHECK(row->value.standard_error == 30);
+}
+
 TEST_CASE("What is measured on a grown tree is measured on its raster too, where its sources are known") {
     constexpr int seeds = 4;
     std::array<double, 9> tree{}, raster{};

@@ -43,6 +43,57 @@ double length_within(const Grid& grid, Index from, const Point& direction, IsIns
     }
 }
 
+constexpr Index jackknife_groups = 20;
+constexpr double share_known = 0.99;  // of the ridges; farther out a few odd ones would decide
+
+Index side_number(const RidgePiece& piece) { return 2 * piece.link + static_cast<Index>(piece.bank); }
+
+/// Of pieces in the order of their distance.
+double distance_of_share(std::span<const RidgePiece> sorted, double share) {
+    double whole = 0, sum = 0;
+    for (const RidgePiece& piece : sorted) whole += piece.length_m;
+    for (const RidgePiece& piece : sorted) {
+        sum += piece.length_m;
+        if (sum >= share * whole) return piece.run_m;
+    }
+    return nan;
+}
+
+/// What `sidewall_reach` is, of pieces in the order of their distance. With s at its best for an R the sum of squares
+/// is less by (Σ w·x·h)²/Σ w·x², x = min(run, R); between the distances of two neighbouring pieces that is
+/// (near.xh + R·far.h)²/(near.xx + R²·far.w), largest at R = far.h·near.xx/(near.xh·far.w).
+double best_reach(std::span<const RidgePiece> sorted) {
+    const double known = distance_of_share(sorted, share_known);
+    double near_xh = 0, near_xx = 0, far_h = 0, far_w = 0;
+    for (const RidgePiece& p : sorted) {
+        far_h += p.length_m * p.rise_m;
+        far_w += p.length_m;
+    }
+    double best = nan, most = 0;
+    const auto look_at = [&](double reach) {
+        const double xh = near_xh + reach * far_h;
+        const double gain = xh > 0 ? xh * xh / (near_xx + reach * reach * far_w) : 0;
+        if (gain > most) {
+            most = gain;
+            best = reach;
+        }
+    };
+    double last = 0;
+    for (const RidgePiece& p : sorted) {
+        const double next = std::min(p.run_m, known);
+        const double between = far_h * near_xx / (near_xh * far_w);
+        if (between > last && between < next) look_at(between);
+        if (next > 0) look_at(next);
+        if (p.run_m >= known) break;
+        last = next;
+        near_xh += p.length_m * p.run_m * p.rise_m;
+        near_xx += p.length_m * p.run_m * p.run_m;
+        far_h -= p.length_m * p.rise_m;
+        far_w -= p.length_m;
+    }
+    return best;
+}
+
 }  // namespace
 
 Estimate channel_maintenance(const StreamNetwork& network) {
@@ -92,28 +143,62 @@ std::vector<double> beyond_sources(const Grid& grid, const terrain::FlowGraph& g
     return beyond;
 }
 
-std::vector<ValleySide> valley_sides(const Grid& grid, const terrain::FlowGraph& graph,
+std::vector<RidgePiece> ridge_pieces(const Grid& grid, const terrain::FlowGraph& graph,
                                      std::span<const double> elevation_m, const StreamNetwork& network) {
     const auto link_of = link_of_nodes(network, graph.size());
     const auto offset = offsets(grid);
     const Valleys v = valleys(graph, offset, link_of);
     const auto valley = [&](Index node) { return v.foot[node] == none ? none : link_of[v.foot[node]]; };
-    std::vector<ValleySide> sides;
-    for (Index link = 0; link < network.size(); ++link) {
-        sides.push_back({.link = link, .bank = Bank::left});
-        sides.push_back({.link = link, .bank = Bank::right});
-    }
+    std::vector<RidgePiece> pieces;
     for (const Index node : graph.order) {
         if (v.foot[node] == none || v.foot[node] == node) continue;
         bool is_ridge = false;
         grid.neighbors(node, [&](Index other, double, Slot) { is_ridge = is_ridge || valley(other) != valley(node); });
         if (!is_ridge) continue;
         const Point away = offset(v.foot[node], node);
-        const double cell = std::sqrt(grid.area(node));
-        ValleySide& side = sides[2 * valley(node) + static_cast<Index>(v.bank[node])];
-        side.ridge_m += cell;
-        side.rise_m += cell * (elevation_m[node] - elevation_m[v.foot[node]]);
-        side.run_m += cell * std::hypot(away.x, away.y);
+        pieces.push_back({.link = valley(node),
+                          .bank = v.bank[node],
+                          .length_m = std::sqrt(grid.area(node)),
+                          .rise_m = elevation_m[node] - elevation_m[v.foot[node]],
+                          .run_m = std::hypot(away.x, away.y)});
+    }
+    return pieces;
+}
+
+double ridge_distance(std::span<const RidgePiece> pieces, double share) {
+    std::vector<RidgePiece> sorted(pieces.begin(), pieces.end());
+    std::ranges::sort(sorted, {}, &RidgePiece::run_m);
+    return distance_of_share(sorted, share);
+}
+
+Estimate sidewall_reach(std::span<const RidgePiece> pieces) {
+    std::vector<RidgePiece> sorted(pieces.begin(), pieces.end());
+    std::ranges::sort(sorted, {}, &RidgePiece::run_m);
+    const double reach = best_reach(sorted);
+    std::vector<double> without;
+    for (Index group = 0; group < jackknife_groups; ++group) {
+        std::vector<RidgePiece> others = sorted;
+        std::erase_if(others, [&](const RidgePiece& p) { return side_number(p) % jackknife_groups == group; });
+        if (others.size() < sorted.size()) without.push_back(best_reach(others));
+    }
+    const auto groups = static_cast<double>(without.size());
+    const double error = standard_deviation(without) * (groups - 1) / std::sqrt(groups);
+    return {reach, error, {reach - 1.96 * error, reach + 1.96 * error}};
+}
+
+std::vector<ValleySide> valley_sides(std::span<const RidgePiece> pieces, double reach_m) {
+    Index links = 0;
+    for (const RidgePiece& piece : pieces) links = std::max(links, piece.link + 1);
+    std::vector<ValleySide> sides;
+    for (Index link = 0; link < links; ++link) {
+        sides.push_back({.link = link, .bank = Bank::left});
+        sides.push_back({.link = link, .bank = Bank::right});
+    }
+    for (const RidgePiece& piece : pieces) {
+        ValleySide& side = sides[side_number(piece)];
+        side.ridge_m += piece.length_m;
+        side.rise_m += piece.length_m * piece.rise_m;
+        side.run_m += piece.length_m * std::min(piece.run_m, reach_m);
     }
     std::erase_if(sides, [](const ValleySide& side) { return side.ridge_m == 0; });
     for (ValleySide& side : sides) {

@@ -28,6 +28,9 @@ void check_dials(const Dials& dials) {
     check_range("delta_sidewall_angle_deg", dials.delta_sidewall_angle_deg, 0, 44);
     const double delta = dials.delta_sidewall_angle_deg;
     check_range("sidewall_angle_deg", dials.sidewall_angle_deg, 1 + delta, 89 - delta);
+    if (!(dials.sidewall_reach_m > 0)) {
+        throw Error(fmt::format("sidewall_reach_m is {}: it must be above 0", dials.sidewall_reach_m));
+    }
     for (const auto& [place, divide] :
          {std::pair{"across", dials.divide_across}, {"below", dials.divide_below}, {"above", dials.divide_above}}) {
         check_range(fmt::format("divide_{}", place), divide.mean, 0.1, 0.9);

@@ -33,7 +33,8 @@ void bound_by_side(const Network& network, const std::vector<double>& channel, I
         const Point offset = network.vertices[vertex] - lower;
         const double share = std::clamp(dot(offset, along) / dot(along, along), 0.0, 1.0);
         const double distance = norm(offset - share * along);
-        const double side_rise = network.sidewall_slope[link][static_cast<std::size_t>(side)] * distance;
+        const double slope = network.sidewall_slope[link][static_cast<std::size_t>(side)];
+        const double side_rise = slope * std::min(distance, network.sidewall_reach_m);
         const double foot = foot_elevation + share * rise;
         HeightRange& of_vertex = ranges[vertex];
         of_vertex.allowed = std::min(of_vertex.allowed, foot + side_rise);

@@ -84,6 +84,7 @@ class Grower {
     std::optional<DivideShares> drawn_divides(std::uint64_t draw_number) const;
     StopReason grow_until_stopped(const Point& origin, Stages&);
     void keep_stage(const Point& origin, Stages&) const;
+    Network network(const Point& origin) const;
 
     GrowingTree tree_;
     Dials dials_;
@@ -292,7 +293,13 @@ void Grower::place_bends(std::size_t bends, const Point& origin) {
 void Grower::keep_stage(const Point& origin, Stages& stages) const {
     const std::size_t kept = stages.networks.size();
     if (kept == stages.links.size() || tree_.links.size() < stages.links[kept]) return;
-    stages.networks.push_back(finished(tree_, origin));
+    stages.networks.push_back(network(origin));
+}
+
+Network Grower::network(const Point& origin) const {
+    Network whole = finished(tree_, origin);
+    whole.sidewall_reach_m = dials_.sidewall_reach_m;
+    return whole;
 }
 
 StopReason Grower::grow_until_stopped(const Point& origin, Stages& stages) {
@@ -315,7 +322,7 @@ StopReason Grower::grow_until_stopped(const Point& origin, Stages& stages) {
 
 Growth Grower::run(const Point& origin, Stages& stages) {
     const StopReason reason = grow_until_stopped(origin, stages);
-    return {finished(tree_, origin), reason, lengthened_, refused_, last_resorts_};
+    return {network(origin), reason, lengthened_, refused_, last_resorts_};
 }
 
 void check_against_basin(const Dials& dials, const Basin& basin) {

@@ -15,7 +15,7 @@
 namespace thalweg::grow {
 namespace {
 
-constexpr int samples_per_line = 8;
+constexpr int pieces_per_line = 8;
 
 /// Both directions of a line in one number.
 std::uint64_t line_between(Index a, Index b) { return (std::uint64_t{std::min(a, b)} << 32) | std::max(a, b); }
@@ -44,19 +44,20 @@ Foot foot_of(const Network& network, std::span<const double> elevation_m, Index 
     return {lower + share * along, low + share * (high - low)};
 }
 
-void add_ridge(const Network& network, std::span<const double> elevation_m, std::array<Index, 2> ends,
-               channel::ValleySide& side) {
+void add_ridge(const Network& network, std::span<const double> elevation_m, std::array<Index, 2> ends, Index link,
+               channel::Bank bank, std::vector<channel::RidgePiece>& pieces) {
     const Point& from = network.vertices[ends[0]];
     const Point along = network.vertices[ends[1]] - from;
-    const double piece = norm(along) / samples_per_line;
-    for (int i = 0; i < samples_per_line; ++i) {
-        const double share = (i + 0.5) / samples_per_line;
+    for (int i = 0; i < pieces_per_line; ++i) {
+        const double share = (i + 0.5) / pieces_per_line;
         const Point p = from + share * along;
-        const Foot foot = foot_of(network, elevation_m, side.link, p);
+        const Foot foot = foot_of(network, elevation_m, link, p);
         const double height = (1 - share) * elevation_m[ends[0]] + share * elevation_m[ends[1]];
-        side.ridge_m += piece;
-        side.rise_m += piece * (height - foot.elevation_m);
-        side.run_m += piece * norm(p - foot.place);
+        pieces.push_back({.link = link,
+                          .bank = bank,
+                          .length_m = norm(along) / pieces_per_line,
+                          .rise_m = height - foot.elevation_m,
+                          .run_m = norm(p - foot.place)});
     }
 }
 
@@ -93,25 +94,21 @@ std::vector<double> beyond_sources(const Network& network) {
     return beyond;
 }
 
-std::vector<channel::ValleySide> valley_sides(const Network& network, std::span<const double> elevation_m) {
+std::vector<channel::RidgePiece> ridge_pieces(const Network& network, std::span<const double> elevation_m) {
     const auto inner = inner_lines(network);
-    std::vector<channel::ValleySide> sides;
+    std::vector<channel::RidgePiece> pieces;
     for (Index link = 0; link < network.size(); ++link) {
         for (const Side hand : {Side::right, Side::left}) {  // looking upstream; the other way round downstream
-            channel::ValleySide side{.link = link,
-                                     .bank = hand == Side::right ? channel::Bank::left : channel::Bank::right};
+            const channel::Bank bank = hand == Side::right ? channel::Bank::left : channel::Bank::right;
             const auto polygon = network.polygon(link, hand);
             for (std::size_t i = 0; i < polygon.size(); ++i) {
                 const std::array ends{polygon[i], polygon[(i + 1) % polygon.size()]};
-                if (!inner.contains(line_between(ends[0], ends[1]))) add_ridge(network, elevation_m, ends, side);
+                if (inner.contains(line_between(ends[0], ends[1]))) continue;
+                add_ridge(network, elevation_m, ends, link, bank, pieces);
             }
-            if (side.ridge_m == 0) continue;
-            side.rise_m /= side.ridge_m;
-            side.run_m /= side.ridge_m;
-            sides.push_back(side);
         }
     }
-    return sides;
+    return pieces;
 }
 
 std::vector<channel::JunctionDivide> junction_divides(const Network& network) {
@@ -150,8 +147,9 @@ channel::GrowthMeasures growth_measures(const Network& network, std::span<const 
                                      .offset_m = offsets(network),
                                      .reach_m = std::numeric_limits<double>::infinity(),  // links are straight
                                      .beyond_source_m = beyond_sources(network),
-                                     .valley_sides = valley_sides(network, elevation_m),
-                                     .divides = junction_divides(network)});
+                                     .ridges = ridge_pieces(network, elevation_m),
+                                     .divides = junction_divides(network),
+                                     .sidewall_reach_m = network.sidewall_reach_m});
 }
 
 }  // namespace thalweg::grow

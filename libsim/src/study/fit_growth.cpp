@@ -82,6 +82,7 @@ Json measures_json(const GrowthFit& fit) {
             {"junction_place", draw_json(m.junction_places)},
             {"headward_reach", draw_json(m.headward_reach)},
             {"valley_side_deg", draw_json(m.sidewall_angle_deg)},
+            {"farthest_ridges_m", number(m.farthest_ridges_m)},
             {"obtuse_side_by_third", shares_json(m.side_choices.obtuse)},
             {"opposite_side_by_third", shares_json(m.side_choices.opposite)},
             {"exterior_links", lengths_json(m.links.exterior)},
@@ -242,7 +243,7 @@ channel::GrowthMeasures growth_measures(const Raster& raster, const RasterMeasur
          .offset_m = m.terrain.offset_m,
          .reach_m = reach_m,
          .beyond_source_m = channel::beyond_sources(raster.grid, m.terrain.graph, network, reach_m),
-         .valley_sides = channel::valley_sides(raster.grid, m.terrain.graph, m.terrain.elevation_m, network),
+         .ridges = channel::ridge_pieces(raster.grid, m.terrain.graph, m.terrain.elevation_m, network),
          .divides = channel::junction_divides(raster.grid, m.terrain.graph, network, reach_m)});
     measures.channel_maintenance_m = scaled(measures.channel_maintenance_m, channel::d8_length_factor);
     return measures;
@@ -281,6 +282,7 @@ Experiment growth_experiment(const GrowthFit& fit, const fs::path& basin) {
     e.basin.base_level_m = fit.site.basin.base_level_m;
     e.growth.dials = fit.dials.dials;
     e.growth.channel_maintenance_m = fit.dials.dials.channel_maintenance_m;
+    if (std::isfinite(fit.dials.dials.sidewall_reach_m)) e.growth.sidewall_reach_m = fit.dials.dials.sidewall_reach_m;
     return e;
 }
 

@@ -169,6 +169,7 @@ std::vector<NamedMeasure> checked_measures(const channel::GrowthMeasures& m) {
             {"headward_reach_delta", m.headward_reach.delta.value},
             {"valley_side_deg", m.sidewall_angle_deg.mean.value},
             {"valley_side_delta_deg", m.sidewall_angle_deg.delta.value},
+            {"farthest_ridges_m", m.farthest_ridges_m},
             {"lower_obtuse", m.side_choices.obtuse[0].value},
             {"middle_opposite", m.side_choices.opposite[1].value},
             {"upper_obtuse", m.side_choices.obtuse[2].value},
@@ -262,6 +263,7 @@ grow::Dials dials_as_measured(const channel::GrowthMeasures& m, const GrowthRule
     dials.stop = rules.stop;
     dials.channel_maintenance_m = m.channel_maintenance_m.value;
     dials.flint = flint_of(m.flint, notes);
+    if (m.sidewall_reach_m.value > 0) dials.sidewall_reach_m = m.sidewall_reach_m.value;
     return dials;
 }
 
@@ -287,6 +289,10 @@ DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, s
     fit.reduced_chi2 = found.reduced_chi2;
     fit.degrees_of_freedom = found.degrees_of_freedom;
     take_matched(found, matched, fit);
+    if (std::isfinite(fit.dials.sidewall_reach_m)) {
+        fit.table.push_back({"sidewall_reach_m", m.sidewall_reach_m, m.sidewall_angle_deg.count,
+                             "heights of ridges by their distance", true});
+    }
     fit.table.insert(fit.table.end(), divides.begin(), divides.end());
     fit.dials.seed = seed;
     fit.check = check_by_growing(basin, fit.dials, m, seed + 1000000);

@@ -263,6 +263,7 @@ grow::Dials dials_of(const Experiment& e) {
     }
     grow::Dials dials = e.growth.dials;
     dials.channel_maintenance_m = *e.growth.channel_maintenance_m;
+    if (e.growth.sidewall_reach_m) dials.sidewall_reach_m = *e.growth.sidewall_reach_m;
     dials.seed = e.seed;
     return dials;
 }

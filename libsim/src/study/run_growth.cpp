@@ -33,6 +33,7 @@ Experiment grown_experiment(const Experiment& study, const GrowthFit& fit, const
     Experiment e = study;
     e.basin = found.basin;
     e.growth.channel_maintenance_m = found.growth.channel_maintenance_m;
+    e.growth.sidewall_reach_m = found.growth.sidewall_reach_m;
     e.growth.dials = found.growth.dials;
     if (!e.output.resolution) e.output.resolution = resolution_like(catchment.raster, fit.site.basin);
     return e;

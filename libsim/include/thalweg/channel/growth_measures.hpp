@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -18,8 +19,9 @@ struct NetworkInValleys {
     OffsetOf offset_m;
     double reach_m;  ///< over which directions are taken
     std::vector<double> beyond_source_m;
-    std::vector<ValleySide> valley_sides;
+    std::vector<RidgePiece> ridges;
     std::vector<JunctionDivide> divides;
+    std::optional<double> sidewall_reach_m = {};  ///< of a grown network, where it is known; none: it is found
 };
 
 /// What tells of the dials with which a network could have grown (Kelley, Malin & Nielson 1988). Measured by the same
@@ -29,6 +31,8 @@ struct GrowthMeasures {
     UniformDraw junction_places;  ///< 0 at the lower end
     UniformDraw headward_reach;   ///< 1 to the divide
     UniformDraw sidewall_angle_deg;
+    Estimate sidewall_reach_m;
+    double farthest_ridges_m;  ///< distance from their channel below which 99 % of the ridges lie
     SideChoices side_choices;
     LinkLengths links;
     PowerLawFit flint;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "thalweg/grow/basin.hpp"
 #include "thalweg/grow/divides.hpp"
@@ -43,6 +44,7 @@ struct Dials {
     Flint flint;                         ///< p in (0, 10], q in [−2, −0.05]
     double sidewall_angle_deg = 25;      ///< mean and delta together stay within 1–89
     double delta_sidewall_angle_deg = 5;
+    double sidewall_reach_m = std::numeric_limits<double>::infinity();  ///< as of `Network`; > 0
     double lower_bias = 0.7;   ///< share of tributaries on the obtuse side of a stream's lower third, 0–1
     double middle_bias = 0.7;  ///< share opposite the next one downstream in its middle third, 0–1
     Divides divides = Divides::slopes;

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -59,6 +60,8 @@ struct Network {
     std::vector<Index> stream;                   ///< main channel from a source to its mouth; 0 is the trunk
     std::vector<double> length_m;
     std::vector<std::array<double, 2>> sidewall_slope;  ///< of the left and right valley side, m/m
+    double sidewall_reach_m =
+        std::numeric_limits<double>::infinity();  ///< farther from its link no side rises any more
 
     std::vector<Index> polygon_offset;    ///< 2 links + 1: left polygon of link i is 2i, right 2i + 1
     std::vector<Index> polygon_vertices;  ///< counter-clockwise; left: lower, upper, …; right: upper, lower, …

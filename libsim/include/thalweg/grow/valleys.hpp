@@ -18,10 +18,10 @@ channel::OffsetOf offsets(const Network&);
 /// From each link's source straight on to the divide (m); 0 for interior links. As channel::beyond_sources on a raster.
 std::vector<double> beyond_sources(const Network&);
 
-/// Ridges of the valley sides, as channel::valley_sides has them on a raster: the sides of the drainage polygons but
+/// Ridges of the valley sides, as channel::ridge_pieces has them on a raster: the sides of the drainage polygons but
 /// for channels and for the line that goes on beyond a source, straight between their ends in height too, compared with
-/// the nearest point of the link. Eight points on each are a sample. `elevation_m` per vertex.
-std::vector<channel::ValleySide> valley_sides(const Network&, std::span<const double> elevation_m);
+/// the nearest point of the link. Each is cut into eight pieces. `elevation_m` per vertex.
+std::vector<channel::RidgePiece> ridge_pieces(const Network&, std::span<const double> elevation_m);
 
 /// The three divides of every junction by their first piece, which is as it was drawn. As channel::junction_divides on
 /// a raster. Where tributaries' lines happen to end in a junction, what lies between the same two links is left out.

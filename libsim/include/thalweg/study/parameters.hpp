@@ -145,7 +145,8 @@ struct Experiment {
     } basin;
     struct {
         std::optional<double> channel_maintenance_m;
-        grow::Dials dials;  ///< but for `channel_maintenance_m` and `seed`, which stand elsewhere: see `dials_of`
+        std::optional<double> sidewall_reach_m;  ///< none: valley sides rise however far off their link is
+        grow::Dials dials;  ///< but for those two and `seed`, which stand elsewhere: see `dials_of`
         grow::Thalweg thalweg = grow::Thalweg::along_channel;
         double tension_channel = 5;
         double tension_ridge = 0;
@@ -266,6 +267,10 @@ void describe_growth(AnyExperiment& e, Visit& visit) {
     visit(Field{"growth.sidewall_angle_deg", "degrees", "slope of valley sides", 1, 89}, g.dials.sidewall_angle_deg);
     visit(Field{"growth.delta_sidewall_angle_deg", "degrees", "spread of that slope", 0, 44},
           g.dials.delta_sidewall_angle_deg);
+    visit(Field{"growth.sidewall_reach_m", "m",
+                "distance from its link beyond which a valley side rises no more; default: it rises all the way", 0,
+                1e9, true},
+          g.sidewall_reach_m);
     visit(Field{"growth.lower_bias", "", "share of tributaries on the obtuse side of a stream's lower third", 0, 1},
           g.dials.lower_bias);
     visit(
