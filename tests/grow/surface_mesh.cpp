@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "thalweg/grow/surface_mesh.hpp"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <map>
@@ -121,6 +122,65 @@ TEST_CASE("The surface's triangles fill random basins, hold all lines as edges a
             REQUIRE(high - low == Approx(rise).epsilon(1e-6).margin(1e-9 * high));
         }
     }
+}
+
+TEST_CASE("Beyond the reach of valley sides there are level benches, and the basin is still filled") {
+    std::size_t places = 0;
+    for (std::uint64_t seed = 0; seed < 100; ++seed) {
+        Grown g = grown(seed);
+        const double c = g.dials.channel_maintenance_m;
+        g.network.sidewall_reach_m = 0.8 * c;
+        const SurfaceMesh mesh = surface_mesh(g.network, g.dials.flint, 0, 0.5 * c);
+        CHECK(area_of(mesh) == Approx(total_area(g.network)).epsilon(1e-9));
+        const auto edges = edges_of(mesh);
+        for (const Edge& line : mesh.lines) REQUIRE(edges.count(std::minmax(line.from, line.to)) == 1);
+        std::vector<std::uint8_t> on_line(mesh.size(), 0);
+        for (const Edge& line : mesh.lines) on_line[line.from] = on_line[line.to] = 1;
+        const auto channel = elevations(g.network, g.dials.flint, 0);
+        const double highest_channel =
+            channel[*std::ranges::max_element(g.network.upper, {}, [&](Index vertex) { return channel[vertex]; })];
+        for (Index i = 0; i < mesh.size(); ++i) {
+            REQUIRE(mesh.height[i] <= highest_channel + 0.8 * c * steepest_side(g.network) * (1 + 1e-9));
+            if (on_line[i] != 0) continue;
+            ++places;
+            REQUIRE_FALSE(mesh.on_channel[i]);
+        }
+    }
+    CHECK(places > 1000);
+}
+
+TEST_CASE("A bare lobe is a bench as high as its sides reach, and its surface does not sag") {
+    // A link of 300 m in a basin 4 km wide: corners at the reach of 500 m, all else of the ground beyond it.
+    Network network;
+    network.vertices = {{0, 0}, {0, 300}, {2000, 0}, {2000, 4000}, {0, 4000}, {-2000, 4000}, {-2000, 0}};
+    network.edges = {{0, 1, EdgeKind::channel}, {0, 2, EdgeKind::outline}, {2, 3, EdgeKind::outline},
+                     {3, 4, EdgeKind::outline}, {4, 5, EdgeKind::outline}, {5, 6, EdgeKind::outline},
+                     {6, 0, EdgeKind::outline}, {1, 4, EdgeKind::head}};
+    network.downstream = {none};
+    network.upstream = {{none, none}};
+    network.lower = {0};
+    network.upper = {1};
+    network.magnitude = {1};
+    network.length_m = {300};
+    network.sidewall_slope = {{0.4, 0.4}};
+    network.sidewall_reach_m = 500;
+    network.polygon_vertices = {0, 1, 4, 5, 6, 1, 0, 2, 3, 4};
+    network.polygon_offset = {0, 5, 10};
+    network.polygon_area_m2 = {8e6, 8e6};
+    const SurfaceMesh mesh = surface_mesh(network, {.p = 0.1, .q = -0.6}, 0, 400);
+    CHECK(area_of(mesh) == Approx(1.6e7));
+    std::vector<std::uint8_t> on_line(mesh.size(), 0);
+    for (const Edge& line : mesh.lines) on_line[line.from] = on_line[line.to] = 1;
+    std::size_t benches = 0;
+    for (Index i = 0; i < mesh.size(); ++i) {
+        const double along = std::clamp(mesh.y[i], 0.0, 300.0);
+        const double away = std::hypot(mesh.x[i], mesh.y[i] - along);
+        INFO(mesh.x[i] << " " << mesh.y[i]);
+        CHECK(mesh.height[i] == Approx(0.1 * along + 0.4 * std::min(away, 500.0)).margin(1e-9));
+        benches += on_line[i] == 0;
+        CHECK((on_line[i] != 0 || away > 500));
+    }
+    CHECK(benches > 50);  // 16 km² in squares of 400 m, less those near the link and near the lines
 }
 
 TEST_CASE(

@@ -61,7 +61,7 @@ double distance_of_share(std::span<const RidgePiece> sorted, double share) {
 
 /// What `sidewall_reach` is, of pieces in the order of their distance. With s at its best for an R the sum of squares
 /// is less by (Σ w·x·h)²/Σ w·x², x = min(run, R); between the distances of two neighbouring pieces that is
-/// (near.xh + R·far.h)²/(near.xx + R²·far.w), largest at R = far.h·near.xx/(near.xh·far.w).
+/// (near_xh + R·far_h)²/(near_xx + R²·far_w), largest at R = far_h·near_xx/(near_xh·far_w).
 double best_reach(std::span<const RidgePiece> sorted) {
     const double known = distance_of_share(sorted, share_known);
     double near_xh = 0, near_xx = 0, far_h = 0, far_w = 0;
@@ -167,13 +167,13 @@ std::vector<RidgePiece> ridge_pieces(const Grid& grid, const terrain::FlowGraph&
 
 double ridge_distance(std::span<const RidgePiece> pieces, double share) {
     std::vector<RidgePiece> sorted(pieces.begin(), pieces.end());
-    std::ranges::sort(sorted, {}, &RidgePiece::run_m);
+    std::ranges::stable_sort(sorted, {}, &RidgePiece::run_m);
     return distance_of_share(sorted, share);
 }
 
 Estimate sidewall_reach(std::span<const RidgePiece> pieces) {
     std::vector<RidgePiece> sorted(pieces.begin(), pieces.end());
-    std::ranges::sort(sorted, {}, &RidgePiece::run_m);
+    std::ranges::stable_sort(sorted, {}, &RidgePiece::run_m);
     const double reach = best_reach(sorted);
     std::vector<double> without;
     for (Index group = 0; group < jackknife_groups; ++group) {

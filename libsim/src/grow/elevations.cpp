@@ -5,12 +5,10 @@
 #include <cmath>
 #include <limits>
 
-#include "grow/plane.hpp"
+#include "grow/valley_side.hpp"
 
 namespace thalweg::grow {
 namespace {
-
-constexpr double least_share_of_rise = 0.1;
 
 /// Elevations of the channels' vertices, NaN elsewhere.
 std::vector<double> channel_elevations(const Network& network, const Flint& flint, double base_level_m) {
@@ -25,20 +23,12 @@ std::vector<double> channel_elevations(const Network& network, const Flint& flin
 
 void bound_by_side(const Network& network, const std::vector<double>& channel, Index link, Side side,
                    std::vector<HeightRange>& ranges) {
-    const Point& lower = network.vertices[network.lower[link]];
-    const Point along = network.vertices[network.upper[link]] - lower;
-    const double foot_elevation = channel[network.lower[link]];
-    const double rise = channel[network.upper[link]] - foot_elevation;
     for (const Index vertex : network.polygon(link, side)) {
-        const Point offset = network.vertices[vertex] - lower;
-        const double share = std::clamp(dot(offset, along) / dot(along, along), 0.0, 1.0);
-        const double distance = norm(offset - share * along);
-        const double slope = network.sidewall_slope[link][static_cast<std::size_t>(side)];
-        const double side_rise = slope * std::min(distance, network.sidewall_reach_m);
-        const double foot = foot_elevation + share * rise;
+        const HeightRange range = range_on_side(network, link, side, channel[network.lower[link]],
+                                                channel[network.upper[link]], network.vertices[vertex]);
         HeightRange& of_vertex = ranges[vertex];
-        of_vertex.allowed = std::min(of_vertex.allowed, foot + side_rise);
-        of_vertex.least = std::max(of_vertex.least, foot + least_share_of_rise * side_rise);
+        of_vertex.allowed = std::min(of_vertex.allowed, range.allowed);
+        of_vertex.least = std::max(of_vertex.least, range.least);
     }
 }
 

@@ -9,8 +9,9 @@
 #include <limits>
 #include <numeric>
 #include <queue>
+#include <span>
 
-#include "grow/plane.hpp"
+#include "grow/valley_side.hpp"
 #include "thalweg/core/error.hpp"
 #include "thalweg/grow/elevations.hpp"
 #include "thalweg/mesh/hilbert.hpp"
@@ -171,6 +172,68 @@ void limit_slopes(const std::vector<double>& least, double steepest, SurfaceMesh
     }
 }
 
+bool is_inside(const Network& network, std::span<const Index> polygon, const Point& p) {
+    bool inside = false;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Point& a = network.vertices[polygon[i]];
+        const Point& b = network.vertices[polygon[(i + 1) % polygon.size()]];
+        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+    }
+    return inside;
+}
+
+double distance_to_sides(const Network& network, std::span<const Index> polygon, const Point& p) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Point& a = network.vertices[polygon[i]];
+        const Point& b = network.vertices[polygon[(i + 1) % polygon.size()]];
+        nearest = std::min(nearest, norm(p - nearest_on_segment(a, b, p)));
+    }
+    return nearest;
+}
+
+/// Places on the benches beyond the reach of valley sides, on a square lattice. Without them edges would cross a lobe
+/// that no tributary reaches from rim to rim, and the smooth surface sag between.
+struct Benches {
+    std::vector<Point> places;
+    std::vector<HeightRange> ranges;
+};
+
+void add_bench(const Network& network, const std::vector<HeightRange>& ranges, Index link, Side side, double spacing,
+               Benches& benches) {
+    const auto polygon = network.polygon(link, side);
+    Point low{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}, high{-low.x, -low.y};
+    double farthest = 0;  // a corner is
+    for (const Index vertex : polygon) {
+        const Point& p = network.vertices[vertex];
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+        farthest = std::max(farthest, from_link(network, link, p).distance_m);
+    }
+    if (!(farthest > network.sidewall_reach_m)) return;
+    for (double row = std::ceil(low.y / spacing); row * spacing < high.y; ++row) {
+        for (double col = std::ceil(low.x / spacing); col * spacing < high.x; ++col) {
+            const Point p{col * spacing, row * spacing};
+            if (!(from_link(network, link, p).distance_m > network.sidewall_reach_m)) continue;
+            if (!is_inside(network, polygon, p) || distance_to_sides(network, polygon, p) < spacing / 3) continue;
+            benches.places.push_back(p);
+            benches.ranges.push_back(range_on_side(network, link, side, ranges[network.lower[link]].least,
+                                                   ranges[network.upper[link]].least, p));
+        }
+    }
+}
+
+/// `ranges` are those of the network's vertices; pieces of lines are up to `longest_m` long.
+Benches benches_of(const Network& network, const std::vector<HeightRange>& ranges, double longest_m) {
+    Benches benches;
+    if (!std::isfinite(network.sidewall_reach_m)) return benches;
+    const double spacing = std::max(longest_m, network.sidewall_reach_m / 2);
+    for (Index link = 0; link < network.size(); ++link) {
+        for (const Side side : {Side::left, Side::right}) add_bench(network, ranges, link, side, spacing, benches);
+    }
+    return benches;
+}
+
 /// Gradients along the channels. Junctions are level: there links of three directions meet, and the gradient of any one
 /// would tilt the beds of the others aside, so that water left them for their neighbour before it came to the junction.
 void set_channel_slopes(const Network& cut, const std::vector<HeightRange>& ranges, SurfaceMesh& mesh) {
@@ -215,8 +278,11 @@ Network subdivided(const Network& network, double longest_m) {
 }
 
 SurfaceMesh surface_mesh(const Network& network, const Flint& flint, double base_level_m, double longest_m) {
-    const Network cut = subdivided(network, longest_m);
-    const std::vector<HeightRange> ranges = height_ranges(cut, flint, base_level_m);
+    Network cut = subdivided(network, longest_m);
+    std::vector<HeightRange> ranges = height_ranges(cut, flint, base_level_m);
+    const Benches benches = benches_of(network, ranges, longest_m);
+    cut.vertices.insert(cut.vertices.end(), benches.places.begin(), benches.places.end());
+    ranges.insert(ranges.end(), benches.ranges.begin(), benches.ranges.end());
     const std::vector<Index> order = mesh::hilbert_order(cut.vertices);
     SurfaceMesh surface;
     surface.vertex_of.resize(order.size());

@@ -200,8 +200,9 @@ std::string run_study(const Experiment& e, Figures figures, const fs::path& fold
     if (explains_by(e, StudyModel::growth)) {
         run_growth_steps(e, catchment, options, folder, messages);
         warn_of_relief(folder, "grown",
-                       "ridges rise at the valley sides' angle however far off the next channel is, so where growth "
-                       "leaves ground bare they come out too high; another seed shows by how much",
+                       "grown links run straight and are more, so that sources come to lie lower than where rivers "
+                       "wind, and what growth leaves bare is as high as valley sides reach; another seed shows by "
+                       "how much it differs",
                        messages);
     }
 

@@ -40,8 +40,10 @@ struct SurfaceMesh {
 /// are those of `elevations`, which new vertices on divides take from their own place: a divide is as high as the
 /// valley sides allow all along, not a straight line between its ends. Where side by side one polygon allows much more
 /// than the next, that would make walls, over which no smooth surface goes: so no vertex is higher than the steepest
-/// valley side of all rises to it from any neighbour, unless it must be to lie above its channels. Vertices are
-/// numbered along a Hilbert curve. Cost: about 1 µs per vertex. Throws Error as `subdivided`.
+/// valley side of all rises to it from any neighbour, unless it must be to lie above its channels. Where a polygon goes
+/// on beyond the reach of its valley side, there are also vertices within it, on a square lattice of half that reach
+/// or `longest_m`, whichever is more. Vertices are numbered along a Hilbert curve. Cost: about 1 µs per vertex. Throws
+/// Error as `subdivided`.
 SurfaceMesh surface_mesh(const Network&, const Flint&, double base_level_m, double longest_m);
 
 }  // namespace thalweg::grow
