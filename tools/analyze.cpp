@@ -141,7 +141,7 @@ void add_analyze(CLI::App& app) {
     command
         ->add_option("--channels", options->channels,
                      "where channels begin: area (--channel-area-m2), slope-area (area times slope squared, "
-                     "--slope-area-m2) or drop (the least area with constant stream drops) [default: area]")
+                     "--slope-area-m2) or drop (the least area from which on stream drops are constant) [default: area]")
         ->check(CLI::IsMember({"area", "slope-area", "drop"}));
     command->add_option("--slope-area-m2", options->slope_area,
                         "area times slope squared where channels begin [default: by constant stream drops]");

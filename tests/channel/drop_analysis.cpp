@@ -57,13 +57,15 @@ TEST_CASE("One larger threshold may differ as chance does, not two, nor by far")
     CHECK(threshold_by_drops(std::vector{t(200, -1, 9), t(400, 2.0, 9), t(800, 2.1, 9), t(1600, 1, 9)}) == 1600.0);
 }
 
-TEST_CASE("A threshold that leaves four streams of higher order lasts only where no other agrees before") {
+TEST_CASE("A threshold that leaves four streams on a side speaks neither for nor against one") {
     const auto& t = drop_test;
     const std::vector few{t(100, -1, 9), t(200, -4, 9), t(400, 0, 4)};
     CHECK(!lasting_threshold_by_drops(few));
     CHECK(threshold_by_drops(few) == 100.0);
     CHECK(threshold_by_drops(std::vector{t(100, -4, 9), t(200, -3, 5), t(400, 0, 4)}) == 400.0);
     CHECK(threshold_by_drops(std::vector{t(100, -1, 9), t(200, -4, 9), t(400, 0, 5)}) == 400.0);
+    CHECK(threshold_by_drops(std::vector{t(100, 1, 9), t(200, -4, 9), t(400, 0, 9), t(800, 3.1, 4)}) == 400.0);
+    CHECK(threshold_by_drops(std::vector{t(100, -4, 9), t(200, 0, 9), t(400, 2.5, 9), t(800, -2.5, 3)}) == 200.0);
 }
 
 TEST_CASE(

@@ -70,9 +70,10 @@ std::optional<double> lasting_threshold_by_drops(std::span<const DropTest> tests
     std::optional<double> lasting;
     int differing = 0;
     for (const DropTest& test : downwards) {
+        if (std::min(test.first_order, test.higher_order) < enough) continue;
         differing += std::abs(test.t) >= 2;
         if (differing > 1 || std::abs(test.t) >= 3) break;
-        if (std::abs(test.t) < 2 && std::min(test.first_order, test.higher_order) >= enough) lasting = test.threshold;
+        if (std::abs(test.t) < 2) lasting = test.threshold;
     }
     return lasting;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <future>
+#include <optional>
 
 #include "study/derivative_rasters.hpp"
 #include "study/ingest.hpp"
@@ -48,21 +49,32 @@ void add_evidence(Json& channels, const ChannelEvidence& evidence) {
     channels["drop_analysis"] = tests;
 }
 
-/// Whether some test of a larger threshold says that drops differ.
-bool differs_above(const std::vector<channel::DropTest>& tests, double threshold) {
-    return std::ranges::any_of(
+/// The first test of a larger threshold that says that drops differ.
+std::optional<channel::DropTest> differing_above(const std::vector<channel::DropTest>& tests, double threshold) {
+    const auto found = std::ranges::find_if(
         tests, [&](const channel::DropTest& test) { return test.threshold > threshold && std::abs(test.t) >= 2; });
+    if (found == tests.end()) return std::nullopt;
+    return *found;
+}
+
+/// What is taken instead of the first threshold at which drops agree, and what speaks against that, too.
+std::string lasting_words(const std::vector<channel::DropTest>& tests, double lasting) {
+    const auto against = differing_above(tests, lasting);
+    return fmt::format("; taken is {:g} m2, from which on they agree{}", lasting,
+                       against ? fmt::format(" but at {:g} m2 (t = {:.2f} of {} and {} streams)", against->threshold,
+                                             against->t, against->first_order, against->higher_order)
+                               : "");
 }
 
 /// Where drops of channels that begin finer or coarser than the choice speak against it.
 void note_crossing_drops(const ChannelEvidence& evidence, std::vector<std::string>& notes) {
     const auto first = channel::first_threshold_by_drops(evidence.drop_tests);
     const auto lasting = channel::lasting_threshold_by_drops(evidence.drop_tests);
-    if (!first || first == lasting || !differs_above(evidence.drop_tests, *first)) return;
+    if (!first || first == lasting || !differing_above(evidence.drop_tests, *first)) return;
     notes.push_back(fmt::format(
         "channels: the mean drops of streams agree at a threshold of {:g} m2 but differ again above it{}: look "
         "at drop_analysis before trusting the choice",
-        *first, lasting ? fmt::format("; taken is {:g} m2, from which on they agree", *lasting) : ""));
+        *first, lasting ? lasting_words(evidence.drop_tests, *lasting) : ""));
 }
 
 /// Channels of a few cells are hillslopes: on small rasters the default comes to that.

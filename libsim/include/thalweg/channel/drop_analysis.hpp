@@ -29,9 +29,9 @@ std::vector<DropTest> drop_analysis(const terrain::FlowGraph&, std::span<const d
 /// further to such that fall less.
 std::optional<double> first_threshold_by_drops(std::span<const DropTest>);
 
-/// The smallest threshold from which on they do not differ, of those with at least five streams on either side, as with
-/// fewer hardly anything differs. Of the larger thresholds one may say otherwise with |t| < 3: of ten tests of streams
-/// that fall alike, one comes to 2 in four cases of ten by chance.
+/// The smallest threshold from which on they do not differ. Tests with fewer than five streams on either side say
+/// nothing, neither for nor against. Of the larger thresholds one may say otherwise with |t| < 3: of ten tests of
+/// streams that fall alike, one comes to 2 in four cases of ten by chance.
 std::optional<double> lasting_threshold_by_drops(std::span<const DropTest>);
 
 /// The lasting threshold, the finest network that obeys the law of constant drops as all coarser ones do (Tarboton,
