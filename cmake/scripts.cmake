@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Python sources stand beside the built program as they will beside the installed one: <prefix>/bin/thalweg looks for
-# <prefix>/share/thalweg/NAME.
+# <prefix>/share/thalweg/NAME. Whoever builds the program alone has them, too.
 function(thalweg_scripts name)
   list(TRANSFORM ARGN PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/)
   file(GLOB sources CONFIGURE_DEPENDS ${ARGN})
@@ -13,5 +13,6 @@ function(thalweg_scripts name)
     list(APPEND copies ${folder}/${file})
   endforeach()
   add_custom_target(thalweg_${name} ALL DEPENDS ${copies})
+  add_dependencies(thalweg thalweg_${name})
   install(FILES ${sources} DESTINATION ${CMAKE_INSTALL_DATADIR}/thalweg/${name})
 endfunction()
