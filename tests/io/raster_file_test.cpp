@@ -365,6 +365,8 @@ TEST_CASE("what is no coordinate system is answered by its number, or by the zon
                    Contains(std::string("--reproject ") + zone));
     }
     CHECK_THAT(refusal(folder / "a.tif", {.nodata = {}, .crs = "32610"}), Contains("(try EPSG:32610)"));
+    CHECK_THAT(refusal(folder / "a.tif", {.nodata = {}, .crs = "99999"}), Contains("(try EPSG:32761)"));
+    CHECK_THAT(refusal(folder / "a.tif", {.nodata = {}, .crs = {}, .reproject = "99999"}), Contains("try EPSG:32761"));
     make(folder, "b.tif", {.transform = {700000, 30, 0, 5100000, 0, -30}, .crs = "EPSG:32632"});
     CHECK_THAT(refusal(folder / "b.tif", {.nodata = {}, .crs = "utm"}), Contains("(try EPSG:32632)"));
     make(folder, "c.tif", {.crs = ""});
@@ -387,8 +389,78 @@ TEST_CASE("a middle outside of what the coordinate system is made for is said so
     CHECK_FALSE(warns(degrees(179.9, -89.9), "EPSG:4326"));
     CHECK(warns({2600000, 30, 0, 1600000, 0, -30}, "EPSG:2056"));  // Swiss system in the Tyrol and beyond
     CHECK_FALSE(warns({2600000, 30, 0, 1200000, 0, -30}, "EPSG:2056"));
-    CHECK_FALSE(warns({200000, 30, 0, 5000000, 0, -30}, "EPSG:32611"));  // less than a degree beyond its zone
-    CHECK(warns({500000, 30, 0, -2000000, 0, -30}, "EPSG:32611"));       // the southern hemisphere has its own
+    CHECK_FALSE(warns({200000, 30, 0, 5000000, 0, -30}, "EPSG:32611"));   // less than a degree beyond its zone
+    CHECK_FALSE(warns({500000, 30, 0, -2000000, 0, -30}, "EPSG:32611"));  // Landsat's way south of the equator
+    CHECK(warns({1600000, 30, 0, 5400000, 0, -30}, "EPSG:32611"));        // New Zealand's numbers
+    CHECK(warns({500000, 30, 0, 5700000, 0, -30}, "EPSG:27700"));         // a UTM zone's numbers on the British grid
+}
+
+TEST_CASE("the area is compared in degrees from Greenwich, whatever the system's own", "[raster]") {
+    const TempFolder folder;
+    struct Place {
+        double x, y;
+        const char* crs;
+    };
+    for (const auto& [x, y, crs] :
+         {Place{600000, 2425000, "EPSG:27572"}, Place{600000, 128000, "EPSG:27561"},
+          Place{600000, 200000, "EPSG:27563"}, Place{0, 0, "EPSG:21780"}, Place{0, 0, "EPSG:27391"}}) {
+        CAPTURE(crs);
+        CHECK(
+            io::read_raster(make(folder, "a.tif", {.transform = {x, 30, 0, y, 0, -30}, .crs = crs})).warnings.empty());
+    }
+    const io::ReadResult far =
+        io::read_raster(make(folder, "a.tif", {.transform = {600000, 30, 0, 1400000, 0, -30}, .crs = "EPSG:27572"}));
+    CHECK(warned(far, "lies at 2.34 degrees east, 39."));
+}
+
+TEST_CASE("the zone that is recommended is not warned of, nor one as wide as its lengths hold", "[raster]") {
+    const TempFolder folder;
+    for (const auto& [longitude, latitude, zone] : {std::tuple{10.5, 78.6, "EPSG:32633"},
+                                                    {22.0, 78.6, "EPSG:32635"},
+                                                    {34.0, 79.0, "EPSG:32637"},
+                                                    {8.0, 78.6, "EPSG:32631"},
+                                                    {3.2, 60.5, "EPSG:32632"}}) {
+        const auto path =
+            make(folder, "a.tif",
+                 {.rows = 20, .cols = 20, .transform = {longitude, 0.001, 0, latitude, 0, -0.001}, .crs = "EPSG:4326"});
+        CAPTURE(zone);
+        CHECK_THAT(refusal(path, {.nodata = {}, .crs = "utm"}), Contains(zone));
+        CHECK_FALSE(
+            warned(io::read_raster(path, {.nodata = {}, .crs = {}, .reproject = zone}), "for which that is made"));
+    }
+    for (const char* norway : {"EPSG:25833", "EPSG:5973"}) {  // Bergen and Kirkenes in the one zone of the country
+        for (const auto& [x, y] : {std::pair{-32000.0, 6734000.0}, {1080000.0, 7790000.0}}) {
+            CAPTURE(norway, x);
+            CHECK(io::read_raster(make(folder, "b.tif", {.transform = {x, 30, 0, y, 0, -30}, .crs = norway}))
+                      .warnings.empty());
+        }
+    }
+}
+
+TEST_CASE("the name of a file's coordinate system is looked up nowhere", "[raster]") {
+    const TempFolder folder;
+    // A system of the Alps, for a raster in Kansas.
+    const std::string lure =
+        folder
+            .text("lure.txt",
+                  "GEOGCRS[\"a\",DATUM[\"b\",ELLIPSOID[\"c\",6378137,298.257223563]],CS[ellipsoidal,2],AXIS[\"lat\","
+                  "north],"
+                  "AXIS[\"lon\",east],ANGLEUNIT[\"degree\",0.0174532925199433],AREA[\"Alps\"],BBOX[45,5,48,11]]")
+            .string();
+    folder.text("a.prj",
+                "PROJCS[\"" + lure +
+                    "\",GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",SPHEROID[\"WGS_1984\",6378137,298.257223563]],"
+                    "PRIMEM[\"Greenwich\",0],UNIT[\"Degree\",0.0174532925199433]],"
+                    "PROJECTION[\"Lambert_Conformal_Conic_2SP\"],PARAMETER[\"standard_parallel_1\",33],"
+                    "PARAMETER[\"standard_parallel_2\",45],PARAMETER[\"latitude_of_origin\",39],"
+                    "PARAMETER[\"central_meridian\",-96],PARAMETER[\"false_easting\",0],"
+                    "PARAMETER[\"false_northing\",0],UNIT[\"Meter\",1]]");
+    const io::ReadResult read = io::read_raster(folder.text("a.asc", ascii_grid(3, 4, "1000", "-600000", "30")));
+    CHECK(read.crs_name == lure);
+    CHECK_FALSE(warned(read, "for which that is made"));
+    const auto path = make(folder, "b.tif");
+    CHECK_THAT(refusal(path, {.nodata = {}, .crs = lure}), Contains("no coordinate system"));
+    CHECK_THAT(refusal(path, {.nodata = {}, .crs = {}, .reproject = lure}), Contains("no coordinate system"));
 }
 
 TEST_CASE("a map whose lengths are not the ground's is said so", "[raster]") {

@@ -12,6 +12,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <string_view>
 
 #include "io/crs_text.hpp"
 #include "io/gdal_guard.hpp"
@@ -23,6 +24,9 @@ namespace thalweg::io {
 namespace {
 
 using Affine = std::array<double, 6>;
+
+constexpr const char* make_sure =
+    "make sure that it is right (--crs tells the DEM's own, --reproject another to warp to)";
 
 Affine upright_transform(GDALDataset& dataset, const std::string& name) {
     Affine t{};
@@ -169,6 +173,7 @@ double map_scale(const Placement& p, Index rows, Index cols, const OGRSpatialRef
     plane.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     const std::unique_ptr<OGRSpatialReference> sphere(plane.CloneGeogCS());
     if (!sphere) return 0;
+    sphere->SetAngularUnits(SRS_UA_DEGREE, std::numbers::pi / 180);  // some have grads
     sphere->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     const std::unique_ptr<OGRCoordinateTransformation> change(OGRCreateCoordinateTransformation(&plane, sphere.get()));
     const Point middle = p.center(rows / 2, cols / 2);
@@ -177,10 +182,9 @@ double map_scale(const Placement& p, Index rows, Index cols, const OGRSpatialRef
     std::array<double, 2> longitude = x, latitude = y;
     if (!change) return 0;
     if (!change->Transform(2, longitude.data(), latitude.data())) {
-        throw Error(
-            fmt::format("the middle of {}, ({:.10g}, {:.10g}), is no place on the earth in its coordinate system ({}): "
-                        "give the right one with --crs",
-                        name, middle.x, middle.y, epsg_or_name(crs)));
+        throw Error(fmt::format(
+            "the middle of {}, ({:.10g}, {:.10g}), is no place on the earth in its coordinate system ({}): {}", name,
+            middle.x, middle.y, epsg_or_name(crs), make_sure));
     }
     const double rounding = std::max({p.cell_width, p.cell_height, 1 / crs.GetLinearUnits()});  // a cell or a metre
     if (!leads_back(*change, {x[0], y[0]}, {longitude[0], latitude[0]}, rounding)) {
@@ -194,39 +198,38 @@ double map_scale(const Placement& p, Index rows, Index cols, const OGRSpatialRef
     return ground > 0 ? p.cell_width * crs.GetLinearUnits() / ground : 0;
 }
 
-/// Longitude and latitude of the raster's middle, degrees; nothing where the system does not tell.
-std::optional<Point> middle_in_degrees(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs) {
-    const GdalGuard gdal;
-    OGRSpatialReference own(crs);
-    own.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    const std::unique_ptr<OGRSpatialReference> sphere(own.CloneGeogCS());
-    if (!sphere) return std::nullopt;
-    sphere->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    const std::unique_ptr<OGRCoordinateTransformation> change(OGRCreateCoordinateTransformation(&own, sphere.get()));
-    Point middle = p.center(rows / 2, cols / 2);
-    if (!change || !change->Transform(1, &middle.x, &middle.y) || !std::isfinite(middle.x)) return std::nullopt;
-    return middle;
+/// What the EPSG has under the system's number: a file's own words seldom tell of the area.
+std::optional<OGRSpatialReference> as_registered(const OGRSpatialReference& crs) {
+    const std::string name = epsg_or_name(crs);
+    return name.starts_with("EPSG:") ? system_of_number(name.substr(5)) : std::nullopt;
 }
 
-/// Where the system is made for, as its authority says, lies elsewhere. Neighbours use it too: a degree is allowed.
-void warn_of_foreign_area(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs,
+bool true_to_scale(double scale) { return std::abs(scale - 1) < 0.01; }
+
+/// Where the system is made for, as its authority says, lies elsewhere. Neighbours use it too: a degree is allowed, and
+/// a transverse Mercator map reaches as far west and east as its lengths hold (Norway's zone 33 is the whole
+/// country's), in a UTM zone south and north too (Landsat's are northern everywhere). `scale` is the map's.
+void warn_of_foreign_area(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs, double scale,
                           const std::string& name, ReadResult& result) {
-    const GdalGuard gdal;
     constexpr double margin_deg = 1;
     double west = 0, south = 0, east = 0, north = 0;
     const char* area = nullptr;
-    const std::optional<Point> middle = middle_in_degrees(p, rows, cols, crs);
-    OGRSpatialReference known;  // a file's own words seldom tell of the area
-    if (!middle || known.SetFromUserInput(epsg_or_name(crs).c_str()) != OGRERR_NONE) return;
-    if (!known.GetAreaOfUse(&west, &south, &east, &north, &area) || south < -90) return;
+    const std::optional<Point> middle = middle_in_degrees(p, rows, cols);
+    const std::optional<OGRSpatialReference> known = as_registered(crs);
+    if (!middle || !known || !known->GetAreaOfUse(&west, &south, &east, &north, &area) || south < -90) return;
+    const char* const projection = known->GetAttrValue("PROJECTION");
+    const bool holds = projection != nullptr && true_to_scale(scale) &&
+                       std::string_view(projection).starts_with(SRS_PT_TRANSVERSE_MERCATOR);
     const double wide = std::remainder(east - west, 360.0) + (std::remainder(east - west, 360.0) <= 0 ? 360 : 0);
     const double beyond = std::abs(std::remainder(middle->x - (west + wide / 2), 360.0)) - wide / 2;
-    if (beyond <= margin_deg && middle->y >= south - margin_deg && middle->y <= north + margin_deg) return;
+    const bool in_columns = holds || beyond <= margin_deg;
+    const bool in_rows =
+        (holds && known->GetUTMZone() != 0) || (middle->y >= south - margin_deg && middle->y <= north + margin_deg);
+    if (in_columns && in_rows) return;
     result.warnings.push_back(
         fmt::format("the middle of {} lies at {:.2f} degrees east, {:.2f} north in its coordinate system ({}), outside "
-                    "of {:g} to {:g} east and {:g} to {:g} north, for which that is made: if it is the wrong one, give "
-                    "the right one with --crs",
-                    name, middle->x, middle->y, epsg_or_name(crs), west, east, south, north));
+                    "of {:g} to {:g} east and {:g} to {:g} north, for which that is made: {}",
+                    name, middle->x, middle->y, epsg_or_name(crs), west, east, south, north, make_sure));
 }
 
 void warn_of_unfit_map(const Placement& p, Index rows, Index cols, const OGRSpatialReference& crs,
@@ -236,13 +239,12 @@ void warn_of_unfit_map(const Placement& p, Index rows, Index cols, const OGRSpat
         const Point middle = p.center(rows / 2, cols / 2);
         result.warnings.push_back(
             fmt::format("the middle of {}, ({:.10g}, {:.10g}), lies beyond the edge of the earth on the map of its "
-                        "coordinate system ({}): lengths, areas and slopes are the map's; if it is the wrong one, give "
-                        "the right one with --crs",
-                        name, middle.x, middle.y, epsg_or_name(crs)));
+                        "coordinate system ({}): lengths, areas and slopes are the map's; {}",
+                        name, middle.x, middle.y, epsg_or_name(crs), make_sure));
         return;
     }
-    warn_of_foreign_area(p, rows, cols, crs, name, result);
-    if (scale == 0 || std::abs(scale - 1) < 0.01) return;
+    warn_of_foreign_area(p, rows, cols, crs, scale, name, result);
+    if (scale == 0 || true_to_scale(scale)) return;
     result.warnings.push_back(fmt::format(
         "lengths on the map of {} are {:.1f} % {} than on the ground: lengths, areas and slopes are the map's "
         "(--reproject warps it to a coordinate system made for the place)",
@@ -310,10 +312,8 @@ void place_with_crs(OGRSpatialReference crs, Index rows, Index cols, const std::
     Placement& p = result.raster.placement;
     if (crs.IsCompound()) crs.StripVertical();
     if (!crs.IsGeographic() && !crs.IsProjected()) {
-        throw Error(
-            fmt::format("the coordinate system of {} ({}) is neither geographic nor projected: give the right "
-                        "one with --crs",
-                        name, crs.GetName() == nullptr ? "unnamed" : crs.GetName()));
+        throw Error(fmt::format("the coordinate system of {} ({}) is neither geographic nor projected: {}", name,
+                                crs.GetName() == nullptr ? "unnamed" : crs.GetName(), make_sure));
     }
     p.geographic = crs.IsGeographic();
     p.crs_wkt = wkt_of(crs);
@@ -321,7 +321,7 @@ void place_with_crs(OGRSpatialReference crs, Index rows, Index cols, const std::
     if (p.geographic) {
         result.raster.grid = degrees_grid(p, rows, cols, crs, name);
         warn_of_seam(p, cols, name, result);
-        warn_of_foreign_area(p, rows, cols, crs, name, result);
+        warn_of_foreign_area(p, rows, cols, crs, 1, name, result);
         return;
     }
     measure_plane(result.raster, rows, cols, crs.GetLinearUnits());

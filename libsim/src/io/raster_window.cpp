@@ -73,7 +73,8 @@ void add_bands(CPLStringList& arguments, GDALDataset& dataset, int heights) {
 /// `for_the_place` is named where the text cannot be understood.
 OGRSpatialReference system_of(const std::string& text, const std::string& for_the_place) {
     OGRSpatialReference system;
-    if (system.SetFromUserInput(text.c_str()) != OGRERR_NONE) {
+    const char* const options[] = {"ALLOW_NETWORK_ACCESS=NO", "ALLOW_FILE_ACCESS=NO", nullptr};
+    if (system.SetFromUserInput(text.c_str(), options) != OGRERR_NONE) {
         throw Error(fmt::format("'{}' is no coordinate system that GDAL knows: {} or the like", text,
                                 try_instead(text, for_the_place)));
     }
