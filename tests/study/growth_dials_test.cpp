@@ -244,12 +244,27 @@ TEST_CASE("Dials have the reach of valley sides that was measured, and none wher
     const grow::Basin basin = support::square_basin(6000);
     auto measures = grown_measures(basin, drawn_dials(2));
     CHECK(std::isinf(fit_dials(basin, measures, 1).dials.sidewall_reach_m));
-    measures.sidewall_reach_m = {700, 30, {641, 759}};
-    const DialsFit fit = fit_dials(basin, measures, 1);
-    CHECK(fit.dials.sidewall_reach_m == 700);
-    const auto row = std::ranges::find(fit.table, "sidewall_reach_m", &FittedDial::name);
-    REQUIRE(row != fit.table.end());
-    CHECK(row->value.standard_error == 30);
+    measures.farthest_ridges_m = 900;
+    const auto reach_of = [&](const Estimate& measured) {
+        measures.sidewall_reach_m = measured;
+        const DialsFit fit = fit_dials(basin, measures, 1);
+        CHECK(fit.dials.sidewall_reach_m == measured.value);
+        const auto row = std::ranges::find(fit.table, "sidewall_reach_m", &FittedDial::name);
+        REQUIRE(row != fit.table.end());
+        CHECK(row->value.standard_error == measured.standard_error);
+        const auto about = [](const std::string& note) { return note.starts_with("sidewall_reach_m"); };
+        CHECK(std::ranges::any_of(fit.notes, about) == (measured.interval95[1] > 900));
+        return *row;
+    };
+    const FittedDial seen = reach_of({700, 30, {641, 759}});
+    CHECK(seen.identified);
+    CHECK(seen.value.interval95 == std::array<double, 2>{641, 759});
+    const FittedDial maybe_farther = reach_of({700, 400, {-84, 1484}});
+    CHECK(maybe_farther.identified);
+    CHECK(maybe_farther.value.interval95 == std::array<double, 2>{0, 900});
+    const FittedDial as_far_as_ridges = reach_of({900, 30, {841, 959}});
+    CHECK(!as_far_as_ridges.identified);
+    CHECK(std::isnan(as_far_as_ridges.value.interval95[1]));
 }
 
 TEST_CASE("What is measured on a grown tree is measured on its raster too, where its sources are known") {

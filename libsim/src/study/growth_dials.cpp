@@ -231,6 +231,29 @@ void take_matched(const infer::Match& found, const std::vector<MatchedDial>& mat
     }
 }
 
+/// The reach as it was measured. Beyond the farthest ridges nothing was seen: where it is as far it has no interval,
+/// and where it may be farther the interval ends there.
+void take_reach(const channel::GrowthMeasures& m, DialsFit& fit) {
+    if (!std::isfinite(fit.dials.sidewall_reach_m)) {
+        fit.notes.push_back("sidewall_reach_m: no ridge lies above its channel; valley sides rise however far they go");
+        return;
+    }
+    FittedDial reach{"sidewall_reach_m", m.sidewall_reach_m, m.sidewall_angle_deg.count,
+                     "heights of ridges by their distance", m.sidewall_reach_m.value < m.farthest_ridges_m};
+    auto& [low, high] = reach.value.interval95;
+    if (!reach.identified) {
+        low = high = std::numeric_limits<double>::quiet_NaN();
+        fit.notes.push_back(
+            "sidewall_reach_m: valley sides rise as far as ridges lie; where they end was not seen, so "
+            "it is as far as the farthest 1 % and may be farther");
+    } else if (high > m.farthest_ridges_m) {
+        fit.notes.push_back("sidewall_reach_m: its interval goes on beyond the farthest ridges, where it is cut");
+    }
+    if (low < 0) low = 0;
+    if (high > m.farthest_ridges_m) high = m.farthest_ridges_m;
+    fit.table.push_back(std::move(reach));
+}
+
 /// The measures that what grows has not, farthest first.
 std::string unmet(const DialsFit& fit) {
     constexpr double far = 3;  // standard deviations
@@ -289,10 +312,7 @@ DialsFit fit_dials(const grow::Basin& basin, const channel::GrowthMeasures& m, s
     fit.reduced_chi2 = found.reduced_chi2;
     fit.degrees_of_freedom = found.degrees_of_freedom;
     take_matched(found, matched, fit);
-    if (std::isfinite(fit.dials.sidewall_reach_m)) {
-        fit.table.push_back({"sidewall_reach_m", m.sidewall_reach_m, m.sidewall_angle_deg.count,
-                             "heights of ridges by their distance", true});
-    }
+    take_reach(m, fit);
     fit.table.insert(fit.table.end(), divides.begin(), divides.end());
     fit.dials.seed = seed;
     fit.check = check_by_growing(basin, fit.dials, m, seed + 1000000);
