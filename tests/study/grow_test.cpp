@@ -300,6 +300,39 @@ TEST_CASE("Channels wider than their valley and sides flatter than their channel
     CHECK(counted > 0);
 }
 
+TEST_CASE("Ground below the outlet is measured, and told where it is more than a hundredth of the relief") {
+    const TempFolder folder;
+    std::vector<std::string> warnings;
+    Messages messages;
+    messages.warning = [&](const std::string& text) { warnings.push_back(text); };
+    const auto dip = [&](const char* out, const Experiment& e) {
+        std::filesystem::create_directory(folder / out);
+        warnings.clear();
+        const Json s = Json::parse(study::grow(e, folder / out, messages));
+        double lowest = *e.basin.base_level_m;
+        for (const double z : grown(e).elevation.values) {
+            if (z < lowest) lowest = z;
+        }
+        CHECK(s["dip_below_outlet_m"].get<double>() == *e.basin.base_level_m - lowest);
+        return s["dip_below_outlet_m"].get<double>();
+    };
+    const auto told = [&] {
+        return std::ranges::any_of(warnings, [](const std::string& w) { return w.find("below its outlet") != w.npos; });
+    };
+    Experiment e = small_growth();
+    dip("even", e);
+    CHECK(!told());
+    // Ridges of very unlike heights beside each other.
+    e.growth.dials.sidewall_angle_deg = 45;
+    e.growth.dials.delta_sidewall_angle_deg = 43;
+    e.growth.dials.flint.p = 0.02;
+    const double loose = dip("unlike", e);
+    CHECK(loose > 10);
+    CHECK(told());
+    e.growth.tension_ridge = 20;
+    CHECK(dip("taut", e) < loose / 4);
+}
+
 TEST_CASE("Slopes of links keep their digits far above the sea") {
     Experiment e = small_growth();
     const GrownTerrain low = grown(e);

@@ -96,6 +96,22 @@ Index sides_flatter_than_channels(const GrownTerrain& t) {
     return count;
 }
 
+/// How far the lowest and the highest cell lie from the outlet's height, at least 0 (m). Curves along a divide from a
+/// high ridge may sag beyond its lower end, under the outlet.
+struct Extent {
+    double below, above;
+};
+
+Extent extent_about_outlet(const GrownTerrain& t) {
+    const double outlet = t.site.basin.base_level_m;
+    Extent extent{0, 0};
+    for (const double height : t.elevation.values) {  // fmax: no data are NaN
+        extent.below = std::fmax(extent.below, outlet - height);
+        extent.above = std::fmax(extent.above, height - outlet);
+    }
+    return extent;
+}
+
 /// The terrain as `analyze` sees it, once with channels as long as the tree and once with its sources.
 struct Measured {
     RasterMeasurement by_area, by_heads;
@@ -135,6 +151,7 @@ Json summary_json(const GrownTerrain& t, const Measured& m) {
                  {"triangles", t.surface.mesh.triangles.size()},
                  {"limited_gradients", t.surface.limited_gradients},
                  {"sides_flatter_than_channels", sides_flatter_than_channels(t)},
+                 {"dip_below_outlet_m", extent_about_outlet(t).below},
                  {"tributary_angles", angles_json(t)}};
     summary["tree"] = tree_json(tree_statistics(network, t.tree), notes);
     summary["terrain"] = terrain_json(input_of(t, m.by_area), m.by_area.statistics, positions(t.elevation),
@@ -198,6 +215,14 @@ void warn(const Experiment& e, const GrownTerrain& t, const Messages& messages) 
                         "to it; give a "
                         "smaller growth.flint_p or steeper growth.sidewall_angle_deg",
                         flat, 2 * t.growth.network.size()));
+    }
+    constexpr double worth_telling = 0.01;  // of what rises above the outlet
+    const Extent extent = extent_about_outlet(t);
+    if (extent.below > worth_telling * extent.above) {
+        messages.warning(
+            fmt::format("the surface dips {:.3g} m below its outlet, between ridges of unlike heights: give a larger "
+                        "growth.tension_ridge (20, say) or a smaller growth.delta_sidewall_angle_deg",
+                        extent.below));
     }
     if (const Banks banks = banks_of(e, t); banks.beyond > 0) {
         messages.warning(
