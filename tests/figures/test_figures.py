@@ -191,6 +191,31 @@ class Figures(unittest.TestCase):
         self.assertFalse(found["fewer than three bins"])
         self.assertTrue(found["one DEM cannot tell whether uplift and incision balance"])
 
+    def test_each_model_is_shown_with_the_values_that_were_found(self):
+        folder = self.changeable()
+        asked, simulated, grown = "mean_junction = 0.5", "k = 1.25e-06", "mean_junction = 0.4375"
+        mock_study.write_growth(folder)
+        for step, text in (("", asked), ("simulate", simulated), ("grow", grown)):
+            with open(os.path.join(folder, step, "experiment.toml"), "w", encoding="utf-8") as stream:
+                stream.write(text + "\n")
+        found = report.provenance(study.Study(folder))
+        self.assertIn(simulated, found.split("The experiment that was simulated, every value resolved")[1])
+        self.assertIn(grown, found.split("The experiment that was grown, every value resolved")[1])
+        self.assertNotIn(asked + "\n", found)
+        for step in ("simulate", "grow"):
+            os.remove(os.path.join(folder, step, "experiment.toml"))
+        self.assertIn(asked, report.provenance(study.Study(folder)).split("The experiment, every value resolved")[1])
+
+    def test_warnings_of_growth_and_of_the_study_itself_are_shown(self):
+        folder = self.changeable()
+        mock_study.write_growth(folder)
+        coarse, relief = "cells of 82 m are coarse for links of 99 m: the raster", "the grown relief is 9 m: another seed"
+        self.edit(folder, ("grow", "summary.json"), lambda content: content.update(notes=[coarse]))
+        self.edit(folder, ("manifest.json",), lambda content: content.update(notes=[relief]))
+        shown = report.notes(study.Study(folder)).split("<details>")[0]
+        self.assertIn(f"<li><b>grow</b>: {coarse}</li>", shown)
+        self.assertIn(f"<li><b>run</b>: {relief}</li>", shown)
+
     def test_no_steady_line_is_drawn_where_uplift_varies_and_the_reason_is_told(self):
         folder = os.path.join(self.changeable(), "simulate")
         side = sides.from_folder(folder, "simulated", "synthetic")

@@ -317,6 +317,21 @@ TEST_CASE("A finer terrain of which only the measures are left is warned of", "[
           1);
 }
 
+TEST_CASE("A study whose model has cells of another size is told how to have them alike", "[compare][cells]") {
+    const TempFolder temp;
+    Json basin = drawn_summary(), made = drawn_summary();
+    basin["input"]["dx_m"] = basin["input"]["dy_m"] = 90.0;
+    made["input"]["dx_m"] = made["input"]["dy_m"] = 30.0;
+    made["input"]["rows"] = 400;
+    made["input"]["cols"] = 600;
+    std::filesystem::create_directories(temp / "out");
+    const Json ab = Json::parse(compare(folder_of(temp, "basin", basin), folder_of(temp, "grown", made),
+                                        {.read = {}, .measure = {}, .model_of_b = temp / "grow"}, temp / "out", {}));
+    const std::string note = ab["notes"][0];
+    CHECK(note.find("ask for output.resolution = 200,") != std::string::npos);
+    CHECK(note.find((temp / "grown").string()) == std::string::npos);  // by then it has another name
+}
+
 TEST_CASE("A grown terrain on larger cells still leaves at its outlet alone, so that all of it counts",
           "[compare][cells]") {
     const TempFolder temp;

@@ -107,8 +107,9 @@ TEST_CASE("A history that goes on after the end of the run is warned of") {
     const Messages messages{.progress = [](const std::string&) {},
                             .warning = [&](const std::string& text) { warnings.push_back(text); }};
     std::filesystem::create_directories(temp / "a");
-    simulate(e, temp / "a", messages);
+    const Json summary = Json::parse(simulate(e, temp / "a", messages));
     REQUIRE(warnings.size() == 1);
+    CHECK(std::ranges::count(summary["notes"], Json(warnings[0])) == 1);
     CHECK(warnings[0].find("base_level.history changes until the year 300000") != std::string::npos);
     e.time.max_steps = 30;
     std::filesystem::create_directories(temp / "b");

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -281,6 +282,7 @@ TEST_CASE("Channels wider than their valley and sides flatter than their channel
         const Json s = Json::parse(study::grow(e, folder / out, messages));
         Index about = 0;
         for (const std::string& text : warnings) about += text.find(what) != std::string::npos;
+        for (const std::string& text : warnings) CHECK(std::ranges::count(s["notes"], Json(text)) == 1);
         return std::pair{about, s["sides_flatter_than_channels"].get<Index>()};
     };
     e.growth.channel_width_m = 5;

@@ -2,6 +2,7 @@
 // The commands' work from end to end, on small landscapes with known parameters.
 #include <catch2/catch.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -203,8 +204,22 @@ TEST_CASE("Notes speak of what was asked for, and of channels that begin within 
 TEST_CASE("A study of the embedded DEM runs from measuring to comparing") {
     const TempFolder temp;
     Experiment e = read_experiment(THALWEG_SOURCE_DIR "/validation/jacksboro.toml");
-    const Json manifest = Json::parse(run_study(e, Figures::leave_out, temp / "", {}));
+    std::vector<std::string> told, reports;
+    const Messages messages{.progress = [&](const std::string& text) { told.push_back(text); },
+                            .warning = [](const std::string&) {},
+                            .report = [&](const std::string& text) { reports.push_back(text); }};
+    const Json manifest = Json::parse(run_study(e, Figures::leave_out, temp / "", messages));
     const auto read = [&](const char* name) { return Json::parse(bytes_of(temp / name)); };
+
+    // Of the box around the catchment only what has data is simulated.
+    const std::string nodes = read("simulate/summary.json")["nodes"].dump();
+    CHECK(std::ranges::count(told, "simulating " + nodes + " nodes") == 1);
+    REQUIRE(reports.size() == 4);
+    CHECK(reports[0].starts_with("whole DEM: jacksboro.tif: "));
+    CHECK(reports[1].starts_with("its basin: jacksboro.tif: "));
+    CHECK(reports[3].starts_with("synthetic: elevation.tif: "));
+    CHECK(manifest["notes"] == Json::array());
+    CHECK(bytes_of(temp / "experiment.toml").starts_with("# k and m as fitted: simulate/experiment.toml\nseed = "));
 
     // 344 x 403 cells of 3 seconds: the area from GeographicLib's polygon of the extent.
     const Json measured = read("measure/summary.json");
@@ -345,7 +360,16 @@ TEST_CASE("A study by growth alone needs no uplift rate, and its grown terrain l
     CHECK_THROWS_AS(run_study(e, Figures::leave_out, folder / "", {}), Error);
     e.study.models = {StudyModel::growth};
     e.growth.dials.upstream_link = grow::UpstreamLink::turns;
-    const Json manifest = Json::parse(run_study(e, Figures::leave_out, folder / "", {}));
+    std::vector<std::string> warnings, reports;
+    const Messages messages{.warning = [&](const std::string& text) { warnings.push_back(text); },
+                            .report = [&](const std::string& text) { reports.push_back(text); }};
+    const Json manifest = Json::parse(run_study(e, Figures::leave_out, folder / "", messages));
+    CHECK(reports.back().starts_with("grown: elevation.tif: "));
+    CHECK(bytes_of(folder / "experiment.toml")
+              .starts_with("# The dials of growth as fitted: grow/experiment.toml\nseed = "));
+    for (const std::string& warning : warnings) {
+        if (warning.starts_with("the grown relief")) CHECK(manifest["notes"] == Json{warning});
+    }
     CHECK(manifest["steps"] == Json{"measure", "basin", "growth_fit", "grow", "grown", "compare_grown"});
     const auto read = [&](const char* file) {
         std::ifstream stream(folder / file);

@@ -464,8 +464,8 @@ def provenance(study):
                              f"{number(grid[2], 4)} m east–west"])
     rows += [[escape(key.replace("_", " ").capitalize()), _value(key, value)] for key, value in study.manifest.items()
              if not key.lower().startswith(UNSHOWN)]
-    text = _experiment_text(study)
-    resolved = f"<details><summary>The experiment, every value resolved</summary><pre>{text}</pre></details>" if text else ""
+    resolved = "".join(f"<details><summary>The experiment{of}, every value resolved</summary><pre>{text}</pre></details>"
+                       for of, text in _experiments(study))
     return (table(["", ""], rows, "text") + "<p>Every file and its checksum stand in <code>manifest.json</code>.</p>" + resolved)
 
 
@@ -478,10 +478,12 @@ def _value(key, value):
     return show(value, 8)
 
 
-def _experiment_text(study):
-    for folder in (study.step("simulate"), study.folder):
-        path = os.path.join(folder, "experiment.toml")
-        if os.path.exists(path):
+def _experiments(study):
+    """What each model was run with, the values found among it; where there is none of it, what the study was asked for."""
+    found = []
+    for of, folder in ((" that was simulated", "simulate"), (" that was grown", "grow"), ("", "")):
+        path = study.step(os.path.join(folder, "experiment.toml"))
+        if os.path.exists(path) and (folder or not found):
             with open(path, encoding="utf-8") as stream:
-                return escape(stream.read())
-    return ""
+                found.append((of, escape(stream.read())))
+    return found

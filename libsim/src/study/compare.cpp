@@ -148,13 +148,23 @@ std::string shown(const Json& value) {
     return value.is_number() ? fmt::format("{:g}", value.get<double>()) : "";
 }
 
-/// What to do about cells of two sizes: an analyze folder has the numbers of its own cells and no more.
+/// Cells along the longer side of b on which they are as large as those of a.
+double resolution_like_a(const Side& a, const Side& b) {
+    return std::fmax(at(b.summary, "/input/rows"), at(b.summary, "/input/cols")) * cell_size(b) / cell_size(a);
+}
+
+/// What to do about cells of two sizes: an analyze folder has the numbers of its own cells and no more. Where a study
+/// made both, its experiment says how large those of the model are.
 std::string unlike_cells(const Side& a, const Side& b, const CompareOptions& options) {
     const double in_a = cell_size(a), in_b = cell_size(b);
     const Side& finer = in_a < in_b ? a : b;
     const std::string what = fmt::format(
         "cells of {:.4g} m in a, of {:.4g} m in b: slopes, lengths and channels depend on their size", in_a, in_b);
     if (options.cells == CompareCells::own) return what;
+    if (options.model_of_b) {
+        return fmt::format("{}; ask for output.resolution = {:.0f}, with which those of b are as large", what,
+                           std::round(resolution_like_a(a, b)));
+    }
     return fmt::format(
         "{}; give the DEM that '{}' was measured on instead of the folder, and it is brought to the larger "
         "cells",

@@ -9,6 +9,7 @@
 
 #include "study/grown_outputs.hpp"
 #include "study/growth_frames.hpp"
+#include "study/noting.hpp"
 #include "study/stopwatch.hpp"
 #include "study/terrain_files.hpp"
 #include "thalweg/channel/d8_length.hpp"
@@ -256,10 +257,12 @@ void check_slopes(const grow::Dials& dials) {
 std::string write_all(Experiment e, const GrownTerrain& t, const std::filesystem::path& folder,
                       const Messages& messages) {
     messages.progress("measuring and writing");
-    warn(e, t, messages);
+    std::vector<std::string> warnings;
+    warn(e, t, noting(messages, warnings));
     const Stopwatch writing;
     const Measured m = measured(t);
     Json summary = summary_json(t, m);
+    for (const std::string& warning : warnings) summary["notes"].push_back(warning);
     summary.update(write_terrain(e, t, folder));
     if (e.output.frames > 0) summary["frames"] = write_frames(t, folder);
     io::write_geopackage(folder / "network.gpkg", grown_layers(e, t), t.site.crs_wkt);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "study/noting.hpp"
 #include "study/report_json.hpp"
 #include "study/run_growth.hpp"
 #include "thalweg/core/error.hpp"
@@ -54,6 +55,14 @@ bool explains_by(const Experiment& e, StudyModel model) {
 Experiment resolved(Experiment e) {
     if (e.study.uplift_m_per_yr) e.uplift.rate_m_per_yr = *e.study.uplift_m_per_yr;
     return e;
+}
+
+/// Where the values stand that a study finds, which its experiment.toml has not: with them it would be another one.
+std::string found_values(const Experiment& e) {
+    std::string text;
+    if (explains_by(e, StudyModel::stream_power)) text += "# k and m as fitted: simulate/experiment.toml\n";
+    if (explains_by(e, StudyModel::growth)) text += "# The dials of growth as fitted: grow/experiment.toml\n";
+    return text;
 }
 
 /// Relief of a model's terrain over that of the real one, told where it is far from 1.
@@ -150,18 +159,13 @@ void run_erosion_steps(const StudiedBasin& b, const fs::path& folder, const Mess
     simulate(fitted_experiment(b.experiment, b.dem, fitted.fit), b.catchment, step_folder(folder, "simulate"),
              messages);
     const NamedRaster synthetic = read_dem(folder / "simulate/elevation.tif", {}, {});
-    analyze(synthetic, b.options, step_folder(folder, "synthetic"), messages);
+    analyze(synthetic, b.options, step_folder(folder, "synthetic"), about("synthetic", messages));
     compare(folder / "basin", folder / "synthetic",
             {.read = {},
              .measure = b.options,
              .realisations = b.experiment.study.realisations,
              .model_of_b = folder / "simulate"},
             step_folder(folder, "compare"), messages);
-    warn_of_relief(
-        folder, "synthetic",
-        "the fitted law does not carry over to the whole catchment; see the range of areas and the errors of "
-        "the fit",
-        messages);
 }
 
 void draw_all(const fs::path& folder, const Messages& messages) {
@@ -181,21 +185,26 @@ std::string run_study(const Experiment& e, Figures figures, const fs::path& fold
         throw Error("study.uplift_m_per_yr is needed: slopes alone tell only k/u, and a simulation needs both");
     }
     const auto start = std::chrono::steady_clock::now();
-    write_text(folder / "experiment.toml", to_toml(resolved(e)));
+    std::vector<std::string> notes;
+    write_text(folder / "experiment.toml", found_values(e) + to_toml(resolved(e)));
     MeasureOptions options;
     options.channel_area_m2 = e.study.channel_area_m2;
     const fs::path dem_file = dem_of(e, folder, messages);
     const NamedRaster dem = read_dem(dem_file, {.nodata = e.study.nodata, .crs = e.study.crs}, messages);
-    analyze(dem, options, step_folder(folder, "measure"), messages);
+    analyze(dem, options, step_folder(folder, "measure"), about("whole DEM", messages));
 
     const Catchment catchment = largest_complete_catchment(dem.raster, options);
     options.catchment_outlet = catchment.outlet;
     if (!options.channel_area_m2) options.channel_area_m2 = catchment_channel_area(catchment.raster);
     NamedRaster basin{catchment.raster, dem.file, dem.sha256, dem.crs_name, {}, dem.origin};
-    analyze(basin, options, step_folder(folder, "basin"), messages);
+    analyze(basin, options, step_folder(folder, "basin"), about("its basin", messages));
 
     if (explains_by(e, StudyModel::stream_power)) {
         run_erosion_steps({e, fs::relative(dem_file, folder), catchment, options}, folder, messages);
+        warn_of_relief(folder, "synthetic",
+                       "the fitted law does not carry over to the whole catchment; see the range of areas and the "
+                       "errors of the fit",
+                       noting(messages, notes));
     }
     if (explains_by(e, StudyModel::growth)) {
         run_growth_steps(e, catchment, options, folder, messages);
@@ -203,10 +212,11 @@ std::string run_study(const Experiment& e, Figures figures, const fs::path& fold
                        "grown links run straight and are more, so that sources come to lie lower than where rivers "
                        "wind, and what growth leaves bare is as high as valley sides reach; another seed shows by "
                        "how much it differs",
-                       messages);
+                       noting(messages, notes));
     }
 
     Json manifest = manifest_json(e, dem, folder);
+    manifest["notes"] = notes;
     write_text(folder / "manifest.json", text_of(manifest));
     if (figures == Figures::draw) draw_all(folder, messages);
     manifest["seconds"] = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/noting.hpp"
 #include "thalweg/study/compare.hpp"
 #include "thalweg/study/fit_growth.hpp"
 #include "thalweg/study/grow.hpp"
@@ -56,7 +57,7 @@ void run_growth_steps(const Experiment& e, const Catchment& catchment, const Mea
     const Point& outlet = fit.site.basin.outlet;
     measuring.catchment_outlet =
         nearest_cell_with_data(grown.raster, {outlet.x / fit.site.unit_m, outlet.y / fit.site.unit_m});
-    analyze(grown, measuring, step_folder(study, "grown"), messages);
+    analyze(grown, measuring, step_folder(study, "grown"), about("grown", messages));
     compare(study / "basin", study / "grown",
             {.read = {}, .measure = measuring, .realisations = e.study.realisations, .model_of_b = study / "grow"},
             step_folder(study, "compare_grown"), messages);

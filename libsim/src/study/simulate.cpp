@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "study/forcing.hpp"
 #include "study/model.hpp"
+#include "study/noting.hpp"
 #include "study/report_json.hpp"
 #include "study/simulation_outputs.hpp"
 #include "study/snapshots.hpp"
@@ -251,16 +253,22 @@ Json summary_json(const Domain& domain, const Outcome& o, const Finished& f, con
     return summary;
 }
 
+/// Cells without data and those outside of an outline are not simulated.
+Index simulated_nodes(const Domain& domain) {
+    return static_cast<Index>(std::ranges::count_if(domain.start.elevation_m, [](double z) { return !std::isnan(z); }));
+}
+
 template <class Topology>
 std::string run(const Topology& topology, const Experiment& e, Domain& domain, double mesh_seconds,
                 const Places& places, const Messages& messages) {
     const std::filesystem::path& folder = places.results;
     const evolve::Model model = model_of(e);
-    messages.progress(fmt::format("simulating {} nodes", topology.size()));
+    messages.progress(fmt::format("simulating {} nodes", simulated_nodes(domain)));
     const Stopwatch simulating;
+    std::vector<std::string> warnings;
     const Outcome outcome = e.time.solver == Solver::steady
                                 ? solve_directly(topology, model.river, e, domain)
-                                : step_through_time(topology, model, e, domain, places, messages);
+                                : step_through_time(topology, model, e, domain, places, noting(messages, warnings));
     const double simulate_seconds = simulating.seconds();
 
     messages.progress("measuring and writing");
@@ -274,6 +282,7 @@ std::string run(const Topology& topology, const Experiment& e, Domain& domain, d
     const Json terrain_files = write_terrain_files(topology, domain, h, finished, e, folder);
     write_text(folder / "experiment.toml", to_toml(e));
     Json summary = summary_json(domain, outcome, finished, position);
+    for (const std::string& warning : warnings) summary["notes"].push_back(warning);
     summary.update(terrain_files);
     if (!outcome.converged && e.time.convergence > 0) {
         messages.warning(fmt::format("not steady after {} steps: a fit of k and m to this landscape assumes that it is",
