@@ -207,7 +207,7 @@ std::string run_study(const Experiment& e, Figures figures, const fs::path& fold
                        noting(messages, notes));
     }
     if (explains_by(e, StudyModel::growth)) {
-        run_growth_steps(e, catchment, options, folder, messages);
+        run_growth_steps(resolved(e), catchment, options, folder, messages);
         warn_of_relief(folder, "grown",
                        "grown links run straight and are more, so that sources come to lie lower than where rivers "
                        "wind, and what growth leaves bare is as high as valley sides reach; another seed shows by "
