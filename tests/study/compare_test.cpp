@@ -226,7 +226,8 @@ TEST_CASE("What a DEM was is told, and by what the sides were measured different
           "rule that says where channels begin: area in a, drop in b", "theta of chi and ksn: 0.45 in a, 0.5 in b"}) {
         CHECK(unlike["notes"].dump().find(word) != std::string::npos);
     }
-    for (const Json& note : compared(temp, dem, dem)["notes"]) {
+    const Json alike = compared(temp, dem, dem);
+    for (const Json& note : alike["notes"]) {
         CHECK(note.get<std::string>().find("in b") == std::string::npos);
     }
 }
