@@ -172,16 +172,6 @@ void limit_slopes(const std::vector<double>& least, double steepest, SurfaceMesh
     }
 }
 
-bool is_inside(const Network& network, std::span<const Index> polygon, const Point& p) {
-    bool inside = false;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Point& a = network.vertices[polygon[i]];
-        const Point& b = network.vertices[polygon[(i + 1) % polygon.size()]];
-        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
-    }
-    return inside;
-}
-
 double distance_to_sides(const Network& network, std::span<const Index> polygon, const Point& p) {
     double nearest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < polygon.size(); ++i) {

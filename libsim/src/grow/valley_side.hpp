@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 
 #include "grow/plane.hpp"
 #include "thalweg/grow/elevations.hpp"
@@ -21,6 +22,18 @@ inline FromLink from_link(const Network& network, Index link, const Point& place
     const Point offset = place - lower;
     const double share = std::clamp(dot(offset, along) / dot(along, along), 0.0, 1.0);
     return {share, norm(offset - share * along)};
+}
+
+/// Whether a place lies in a polygon of the network, by the even–odd rule.
+inline bool is_inside(const Network& network, std::span<const Index> polygon, const Point& p) {
+    bool inside = false;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Point& a = network.vertices[polygon[i]];
+        const Point& b = network.vertices[polygon[(i + 1) % polygon.size()]];
+        if ((a.y > p.y) == (b.y > p.y)) continue;
+        if (p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
+    }
+    return inside;
 }
 
 /// What one valley side says of the height of a place on it; `lower_m` and `upper_m` are the heights of its link's

@@ -222,9 +222,8 @@ void warn(const Experiment& e, const GrownTerrain& t, const Messages& messages) 
     if (extent.below > worth_telling * extent.above) {
         messages.warning(fmt::format(
             "the surface dips {:.3g} m below its outlet, between ridges of unlike heights or over low ones: give a "
-            "larger "
-            "growth.tension_ridge (20, say), a smaller growth.delta_sidewall_angle_deg or, where it is far less "
-            "than growth.channel_maintenance_m, a larger growth.sidewall_reach_m",
+            "larger growth.tension_ridge (20, say), a smaller growth.delta_sidewall_angle_deg or, where it is far "
+            "less than growth.channel_maintenance_m, a larger growth.sidewall_reach_m",
             extent.below));
     }
     if (const Banks banks = banks_of(e, t); banks.beyond > 0) {

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "grow/valley_side.hpp"
 #include "thalweg/grow/elevations.hpp"
 #include "thalweg/mesh/triangulate_lines.hpp"
 #include "thalweg/surface/heightfield.hpp"
@@ -59,18 +60,6 @@ std::vector<Point> each_once(const std::vector<Point>& points) {
     return kept;
 }
 
-/// Even–odd rule.
-bool is_inside(const grow::Network& network, std::span<const Index> polygon, const Point& p) {
-    bool inside = false;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Point& a = network.vertices[polygon[i]];
-        const Point& b = network.vertices[polygon[(i + 1) % polygon.size()]];
-        if ((a.y > p.y) == (b.y > p.y)) continue;
-        if (p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) inside = !inside;
-    }
-    return inside;
-}
-
 /// Along both banks of a link, at most `spacing_m` apart.
 void add_banks(const Experiment& e, const grow::Network& network, Index link, double spacing_m, Banks& banks) {
     const double half_width = channel_width_m(e, network.magnitude[link]) / 2;
@@ -85,7 +74,7 @@ void add_banks(const Experiment& e, const grow::Network& network, Index link, do
             const double aside = (side == grow::Side::left ? half_width : -half_width) / length;
             const Point bank{lower.x + share * along.x - aside * along.y, lower.y + share * along.y + aside * along.x};
             ++banks.all;
-            if (is_inside(network, network.polygon(link, side), bank)) {
+            if (grow::is_inside(network, network.polygon(link, side), bank)) {
                 banks.places.push_back(bank);
             } else {
                 ++banks.beyond;
