@@ -174,6 +174,14 @@ TEST_CASE("What was not measured is left open, and what cannot be grown is said"
 
 namespace {
 
+/// What a grown terrain's raster tells, its channels beginning at its own sources.
+channel::GrowthMeasures measured_on_raster(const GrownTerrain& t) {
+    MeasureOptions options = measure_options(t);
+    options.heads = grown_heads(t);
+    options.channels = ChannelRule::heads;
+    return growth_measures(t.elevation, measure_raster(t.elevation, options));
+}
+
 /// Mean shares of the divides across from, below and above tributaries, on the rasters of several grown terrains.
 std::array<double, 3> divides_on_rasters(const std::array<double, 3>& drawn) {
     constexpr int seeds = 6;
@@ -189,10 +197,7 @@ std::array<double, 3> divides_on_rasters(const std::array<double, 3>& drawn) {
         e.output.resolution = 600;
         const GrownTerrain t =
             grown_terrain(e, {.basin = support::square_basin(12000), .crs_wkt = "", .warnings = {}}, {});
-        MeasureOptions options = measure_options(t);
-        options.heads = grown_heads(t);
-        options.channels = ChannelRule::heads;
-        const auto m = growth_measures(t.elevation, measure_raster(t.elevation, options)).divides;
+        const auto m = measured_on_raster(t).divides;
         for (std::size_t i = 0; const auto* divide : {&m.across, &m.below, &m.above}) {
             CHECK(divide->share.count > 0.95 * t.growth.network.junctions.size());
             sum[i++] += divide->share.mean.value / seeds;
@@ -228,10 +233,7 @@ TEST_CASE("The reach of valley sides that a terrain was grown with is found on i
         e.output.resolution = 600;
         const GrownTerrain t =
             grown_terrain(e, {.basin = support::square_basin(12000), .crs_wkt = "", .warnings = {}}, {});
-        MeasureOptions options = measure_options(t);
-        options.heads = grown_heads(t);
-        options.channels = ChannelRule::heads;
-        const auto m = growth_measures(t.elevation, measure_raster(t.elevation, options));
+        const auto m = measured_on_raster(t);
         CHECK(m.farthest_ridges_m > 1000);
         sum += m.sidewall_reach_m.value / seeds;
     }
@@ -276,9 +278,6 @@ TEST_CASE("What is measured on a grown tree is measured on its raster too, where
         e.growth.channel_maintenance_m = 1000;
         e.output.resolution = 600;
         const GrownTerrain t = grown_terrain(e, {.basin = support::square_basin(12000)}, {});
-        MeasureOptions options = measure_options(t);
-        options.heads = grown_heads(t);
-        options.channels = ChannelRule::heads;
         const auto add = [&](const channel::GrowthMeasures& m, std::array<double, 9>& sum) {
             const std::array values{
                 m.channel_maintenance_m.value / 1000,  m.junction_places.mean.value,   m.junction_places.delta.value,
@@ -287,7 +286,7 @@ TEST_CASE("What is measured on a grown tree is measured on its raster too, where
             for (std::size_t i = 0; i < values.size(); ++i) sum[i] += values[i] / seeds;
         };
         add(grow::growth_measures(t.growth.network, grow::elevations(t.growth.network, t.dials.flint, 100)), tree);
-        add(growth_measures(t.elevation, measure_raster(t.elevation, options)), raster);
+        add(measured_on_raster(t), raster);
     }
     // Ways to the divide come out short on a raster, where rivers join later than their lines do.
     const std::array<double, 9> close{0.05, 0.05, 0.06, 0.06, 0.12, 0.12, 0.15, 0.1, 0.1};
